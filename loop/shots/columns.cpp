@@ -9,10 +9,10 @@
 #include <numeric>
 
 #include "golf/dense.hpp"
-#include "golf/first_contact.hpp"
 #include "golf/quantities.hpp"
 #include "loop/deviation.hpp"
 #include "loop/rules.hpp"
+#include "loop/shots/contact_changes.hpp"
 #include "loop/shots/inputs.hpp"
 #include "loop/shots/scatter.hpp"
 
@@ -72,6 +72,13 @@ struct Columns::Slip {
   double deviance = 0;
   double criterion() const { return deviance + cost; }
   bool disputed = false;  ///< physics does as well, which of a level shift changes there; or every group differs
+};
+
+/// Rows that share something: from a shot on, or one group.
+struct Columns::PartOfRows {
+  std::vector<char> member;
+  std::string what;
+  std::vector<std::vector<char>> others;  ///< the other groups, where it is one
 };
 
 Columns::~Columns() = default;
@@ -351,37 +358,40 @@ void Columns::try_constants() {
 
 namespace {
 
-/// What the contact may do that the library does not say of a part of the rows, or of one direction of the face.
-struct OfContact {
-  Parametrisation form;
-  double largest;  ///< change that is no wonder
-};
-
-Parametrisation change_of_contact() {
-  return {.effect = "", .what = "", .parameters = {{"change", "1", 1, -1, 1, 1e-3}}};
-}
-
-OfContact changed(double ContactLaw::*of, double largest) {
-  OfContact c{change_of_contact(), largest};
-  c.form.before = [of](std::span<const double> p, Shot& s) { s.blow.contact.*of += p[0]; };
-  return c;
-}
-
-/// Tangential energy comes back along one axis of the face alone: 1 across it, 2 up it.
-OfContact returned_along(int axis) {
-  OfContact c{change_of_contact(), 0.8};
-  c.form.after = [axis](std::span<const double> p, const Shot& s, Launch& launch) {
-    Blow with = s.blow;
-    with.contact.tangential_restitution += p[0];
-    const Launch a = closed_form().launch(with), b = closed_form().launch(s.blow);
-    const FirstContact g = first_contact(s.blow);
-    const Vec3 axis_of_face = g.face_axes.col(axis),
-               along = (axis_of_face - axis_of_face.dot(g.normal) * g.normal).normalized(),
-               about = g.normal.cross(along);
-    launch.velocity += along.dot(a.velocity - b.velocity) * along;
-    launch.spin += about.dot(a.spin - b.spin) * about;
-  };
-  return c;
+/// The size t that brings whitened residuals z + j t down most, and their deviance: from the middle of what single
+/// shots ask for.
+std::pair<double, double> fitted(const Eigen::MatrixXd& z, const Eigen::MatrixXd& j) {
+  const Eigen::Index n = z.rows();
+  const solvers::Loss loss = loss_of_shot(int(z.cols())).uncapped();
+  std::vector<std::pair<double, double>> asked;  // by a shot, its weight
+  double total = 0;
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const double jj = j.row(i).squaredNorm();
+    if (!(jj > 0) || !z.row(i).allFinite()) continue;
+    asked.emplace_back(-j.row(i).dot(z.row(i)) / jj, std::sqrt(jj));
+    total += std::sqrt(jj);
+  }
+  std::ranges::sort(asked);
+  double t = 0, sum = 0, value = 0;
+  for (const auto& [x, weight] : asked)
+    if ((sum += weight) > total / 2) {
+      t = x;
+      break;
+    }
+  for (int pass = 0; pass < 5; ++pass) {
+    double a = 0, b = 0;
+    value = 0;
+    for (Eigen::Index i = 0; i < n; ++i) {
+      if (!z.row(i).allFinite()) continue;
+      const Eigen::VectorXd at = (z.row(i) + t * j.row(i)).transpose();
+      const double w = loss.weight(at.squaredNorm());
+      value += loss(at.squaredNorm());
+      a += w * j.row(i).squaredNorm();
+      b += w * j.row(i).dot(at);
+    }
+    if (a > 0) t -= b / a;
+  }
+  return {t, value};
 }
 
 /// The rows of `j` that are members.
@@ -393,8 +403,8 @@ Eigen::MatrixXd members_only(const Eigen::MatrixXd& j, const std::vector<char>& 
 }
 
 /// Whether these groups differ among each other too: then a group is no exception.
-bool spread_over(const Eigen::MatrixXd& z, const Eigen::MatrixXd& j, const solvers::Loss& loss,
-                 const std::vector<std::vector<char>>& groups) {
+bool spread_over(const Eigen::MatrixXd& z, const Eigen::MatrixXd& j, const std::vector<std::vector<char>>& groups) {
+  const solvers::Loss loss = loss_of_shot(int(z.cols())).uncapped();
   double square = 0, pull = 0, weight = 0;
   int count = 0;
   for (const std::vector<char>& member : groups) {
@@ -418,53 +428,9 @@ bool spread_over(const Eigen::MatrixXd& z, const Eigen::MatrixXd& j, const solve
 
 }  // namespace
 
-/// Slips whose size is found: offset, scale, and offset of a part of the session. All by linear algebra about the
-/// recorded values, the best of them again about themselves.
-void Columns::try_sizes() {
-  const Eigen::Index n = values_.rows(), m = std::ptrdiff_t(outputs_.size());
-  const Eigen::MatrixXd r = residuals(values_, {}, {}), W = whitening(values_, noise_);
-  const solvers::Loss loss = loss_of_shot(int(m)).uncapped();
-
-  /// The size that brings whitened residuals z + j t down most: from the middle of what single shots ask for.
-  const auto fitted = [&](const Eigen::MatrixXd& z, const Eigen::MatrixXd& j) {
-    std::vector<std::pair<double, double>> asked;  // by a shot, its weight
-    double total = 0;
-    for (Eigen::Index i = 0; i < n; ++i) {
-      const double jj = j.row(i).squaredNorm();
-      if (!(jj > 0) || !z.row(i).allFinite()) continue;
-      asked.emplace_back(-j.row(i).dot(z.row(i)) / jj, std::sqrt(jj));
-      total += std::sqrt(jj);
-    }
-    std::ranges::sort(asked);
-    double t = 0, sum = 0, value = 0;
-    for (const auto& [x, weight] : asked)
-      if ((sum += weight) > total / 2) {
-        t = x;
-        break;
-      }
-    for (int pass = 0; pass < 5; ++pass) {
-      double a = 0, b = 0;
-      value = 0;
-      for (Eigen::Index i = 0; i < n; ++i) {
-        if (!z.row(i).allFinite()) continue;
-        const Eigen::VectorXd at = (z.row(i) + t * j.row(i)).transpose();
-        const double w = loss.weight(at.squaredNorm());
-        value += loss(at.squaredNorm());
-        a += w * j.row(i).squaredNorm();
-        b += w * j.row(i).dot(at);
-      }
-      if (a > 0) t -= b / a;
-    }
-    return std::pair{t, value};
-  };
-
-  std::vector<Slip> trials;
-  const Eigen::MatrixXd z = r * W.transpose();
-  struct PartOfRows {
-    std::vector<char> member;
-    std::string what;
-    std::vector<std::vector<char>> others;  // the other groups, where it is one
-  };
+/// From some shot on, and where a column of text has a value that a quarter of the rows have, and not three.
+std::vector<Columns::PartOfRows> Columns::parts() const {
+  const Eigen::Index n = values_.rows();
   std::vector<PartOfRows> parts;
   std::vector<Eigen::Index> by_order(static_cast<std::size_t>(n));
   std::iota(by_order.begin(), by_order.end(), Eigen::Index(0));
@@ -494,6 +460,60 @@ void Columns::try_sizes() {
       parts.push_back({of[k], fmt::format("where {} is {}", c.name, g.name[k]), std::move(others)});
     }
   }
+  return parts;
+}
+
+/// A club or a ball that changes there moves the ball speed as a reading that is off from there on does: a face the
+/// same all over, or the more the farther from its centre. Deviance of the best such change, by part; "": of all rows.
+std::map<std::string, double> Columns::by_contact(const Eigen::MatrixXd& z, const Eigen::MatrixXd& W,
+                                                  const std::vector<PartOfRows>& parts) const {
+  const auto index = [&](Input i) { return std::ranges::find(inputs_, i) - inputs_.begin(); };
+  Eigen::VectorXd square = Eigen::VectorXd::Zero(values_.rows());
+  for (const Input i : {Input::impact_toe, Input::impact_high})
+    if (index(i) < std::ptrdiff_t(inputs_.size())) square += (values_.col(index(i)) / 0.01).cwiseAbs2();
+  std::map<std::string, double> best;
+  const auto rival = [&](const std::string& where, double value) {
+    const auto known = best.try_emplace(where, value).first;
+    known->second = std::min(known->second, value);
+  };
+  struct Change {
+    Eigen::MatrixXd by;
+    double largest;
+  };
+  const auto moving = [&](const std::array<ContactChange, 2>& of) {
+    std::vector<Change> changes;
+    for (const ContactChange& c : of)
+      if (Eigen::MatrixXd by = sensitivity(c.form) * W.transpose(); !(by.norm() < kFaint))
+        changes.push_back({std::move(by), c.largest});
+    return changes;
+  };
+  const std::vector<Change> of_ball = moving(of_another_ball());
+  for (const PartOfRows& part : parts) {
+    Eigen::MatrixXd left;  // by the first change: another ball differs in both
+    for (const Change& c : of_ball) {
+      const Eigen::MatrixXd even = members_only(c.by, part.member);
+      if (left.size())
+        if (const auto [size, value] = fitted(left, even); std::abs(size) <= c.largest)
+          rival(part.what, value + case_.rules.parameter_cost);
+      const auto [size, value] = fitted(z, even);
+      if (std::abs(size) > c.largest) continue;
+      rival(part.what, value);
+      const Eigen::MatrixXd off_centre = square.asDiagonal() * even, beside = z + size * even;
+      if (off_centre.norm() > kFaint) rival(part.what, fitted(beside, off_centre).second + case_.rules.parameter_cost);
+      left = beside;
+    }
+  }
+  for (const Change& c : moving(of_one_direction()))
+    if (const auto [size, value] = fitted(z, c.by); std::abs(size) <= c.largest) rival("", value);
+  return best;
+}
+
+/// Slips whose size is found: offset, scale, and offset of a part of the session. All by linear algebra about the
+/// recorded values, the best of them again about themselves.
+void Columns::try_sizes() {
+  const Eigen::MatrixXd W = whitening(values_, noise_), z = residuals(values_, {}, {}) * W.transpose();
+  const std::vector<PartOfRows> parts = this->parts();
+  std::vector<Slip> trials;
   for (int k = 0; k < int(columns_.size()); ++k) {
     const Eigen::MatrixXd J = sensitivity(values_, k) * W.transpose();
     if (J.norm() < kFaint) continue;
@@ -508,49 +528,11 @@ void Columns::try_sizes() {
     consider({.finding = "scale", .column = k, .cost = 9}, x.asDiagonal() * J);
     for (const PartOfRows& part : parts) {
       Slip shift{.finding = "level-shift", .column = k, .member = part.member, .what = part.what, .cost = 15};
-      shift.disputed = spread_over(z, J, loss, part.others);
+      shift.disputed = spread_over(z, J, part.others);
       consider(std::move(shift), members_only(J, part.member));
     }
   }
-  // A club or a ball that changes there moves the ball speed as a reading that is off from there on does: a face the
-  // same all over, or the more the farther from its centre.
-  const auto index = [&](Input i) { return std::ranges::find(inputs_, i) - inputs_.begin(); };
-  Eigen::VectorXd square = Eigen::VectorXd::Zero(n);
-  for (const Input i : {Input::impact_toe, Input::impact_high})
-    if (index(i) < std::ptrdiff_t(inputs_.size())) square += (values_.col(index(i)) / 0.01).cwiseAbs2();
-  std::map<std::string, double> physics;
-  const auto rival = [&](const std::string& where, double value) {
-    const auto known = physics.try_emplace(where, value).first;
-    known->second = std::min(known->second, value);
-  };
-  struct Change {
-    Eigen::MatrixXd by;
-    double largest;
-  };
-  std::vector<Change> changes;
-  for (const OfContact& c : {changed(&ContactLaw::restitution, 0.1), changed(&ContactLaw::tangential_restitution, 0.3)})
-    if (Eigen::MatrixXd by = sensitivity(c.form) * W.transpose(); !(by.norm() < kFaint))
-      changes.push_back({std::move(by), c.largest});
-  for (const PartOfRows& part : parts) {
-    Eigen::MatrixXd left;  // by the first change: another ball differs in both
-    for (const Change& c : changes) {
-      const Eigen::MatrixXd even = members_only(c.by, part.member);
-      if (left.size())
-        if (const auto [size, value] = fitted(left, even); std::abs(size) <= c.largest)
-          rival(part.what, value + case_.rules.parameter_cost);
-      const auto [size, value] = fitted(z, even);
-      if (std::abs(size) > c.largest) continue;
-      rival(part.what, value);
-      const Eigen::MatrixXd off_centre = square.asDiagonal() * even, beside = z + size * even;
-      if (off_centre.norm() > kFaint) rival(part.what, fitted(beside, off_centre).second + case_.rules.parameter_cost);
-      left = beside;
-    }
-  }
-  for (const OfContact& c : {returned_along(1), returned_along(2)}) {
-    const Eigen::MatrixXd by = sensitivity(c.form) * W.transpose();
-    if (by.norm() < kFaint) continue;
-    if (const auto [size, value] = fitted(z, by); std::abs(size) <= c.largest) rival("", value);
-  }
+  const std::map<std::string, double> physics = by_contact(z, W, parts);
   for (Slip& t : trials)
     if (const auto it = physics.find(t.what); it != physics.end())
       t.disputed = t.disputed || it->second + t.cost < t.criterion() + case_.rules.tie;
@@ -567,7 +549,7 @@ void Columns::try_sizes() {
     for (int pass = 0; pass < 3; ++pass) {
       const Eigen::MatrixXd at = corrected(slip), V = whitening(at, noise_of(slip));
       Eigen::MatrixXd j = sensitivity(at, slip.column) * V.transpose();
-      for (Eigen::Index i = 0; i < n; ++i) {
+      for (Eigen::Index i = 0; i < j.rows(); ++i) {
         const double x = values_(i, slip.column);
         j.row(i) *= slip.finding == "scale" ? (std::isfinite(x) ? x : 0.0)
                                             : double(slip.member.empty() || slip.member[std::size_t(i)]);

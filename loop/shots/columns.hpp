@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -31,6 +32,7 @@ class Columns {
 
  private:
   struct Slip;
+  struct PartOfRows;
   /// The base answers in microseconds itself: else the closed form stands for it, and shows gross slips only.
   bool quick() const { return case_.direct && case_.model; }
   void read();
@@ -49,6 +51,9 @@ class Columns {
   bool tells(const Slip& slip) const;
   void attempt(Slip slip);
   void try_constants();
+  std::vector<PartOfRows> parts() const;
+  std::map<std::string, double> by_contact(const Eigen::MatrixXd& z, const Eigen::MatrixXd& W,
+                                           const std::vector<PartOfRows>& parts) const;
   void try_sizes();
   std::string text(const Slip& slip, bool second) const;
 
