@@ -213,11 +213,17 @@ class Deep(Test):
         self.assertIn("accuracy=look", (self.at / "log").read_text())
 
     def test_a_study_goes_on_from_the_points_that_another_program_left(self):
-        body = "[ $1 = check ] && exit 0\ncat some/driver-toe/shards/1-of-1/points.jsonl\n"
-        points = self.file("begun", "nine in ten\n")
+        body = """case $1 in
+            sweep) for out; do :; done; mkdir -p "$out"; echo '{"version":"this one","fingerprint":"this","points":9}' > "$out/plan.json";;
+            run) cat some/driver-toe/shards/1-of-1/points.jsonl;; esac
+"""
+        points = self.file("begun", '{"version":"another"}\nnine in ten\n')
         self.assertNotEqual(self.case(body, points=self.at / "none"), 0)
         self.assertEqual(self.case(body, points=points), 0)
-        self.assertIn("nine in ten", (self.at / "log").read_text())
+        told = (self.at / "log").read_text()
+        self.assertIn("this one", told)
+        self.assertIn("nine in ten", told)
+        self.assertNotIn("another", told)
 
     def test_lines_are_counted_where_their_share_is_asked_for(self):
         counted = re.findall(r"^source:\*/(\w+)/\*=allow$", (ROOT / "tests/support/counted_floors").read_text(), re.M)
