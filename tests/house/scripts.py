@@ -225,6 +225,15 @@ class Deep(Test):
         self.assertIn("nine in ten", told)
         self.assertNotIn("another", told)
 
+    def test_points_that_are_left_to_compute_are_of_every_part_of_a_study(self):
+        lines = ["head\n", *(f"{variant} {k}\n" for variant in ("first", "second") for k in range(60))]
+        module("../tests/cases/again").hand_over(self.file("points", "".join(lines)), self.at / "begun")
+        kept = (self.at / "begun").read_text().splitlines(True)
+        self.assertEqual(kept, [line for line in lines if line in set(kept)])
+        left = set(lines) - set(kept)
+        self.assertEqual(len(left), 12)
+        self.assertEqual({line.split()[0] for line in left}, {"first", "second"})
+
     def test_lines_are_counted_where_their_share_is_asked_for(self):
         counted = re.findall(r"^source:\*/(\w+)/\*=allow$", (ROOT / "tests/support/counted_floors").read_text(), re.M)
         self.assertEqual(counted, module("deep-check").COVERED)
