@@ -105,7 +105,7 @@ struct Setting {
 /// What an effect on shots is where it is one free function through one mechanism, whatever its form.
 struct OneFunction {
   enum class Through { several, normal_restitution, tangential_restitution, recorded_loft } through = Through::several;
-  enum class Of { blow, place } of = Of::blow;  ///< speed, loft, attack angle; or the place of impact
+  enum class Of { blow, place } of = Of::blow;  ///< speed, loft, attack angle, incidence; or the place of impact
 
   bool operator==(const OneFunction&) const = default;
 };

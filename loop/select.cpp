@@ -7,25 +7,48 @@ namespace {
 
 bool has(const std::vector<std::string>& names, const std::string& name) { return std::ranges::count(names, name) > 0; }
 
-/// Names common to all sets are beyond the tie; what differs is tied.
-void tell_ties(const std::vector<const Candidate*>& tied, Selection& out) {
-  out.adopted = tied.front()->effects;
+/// Names common to all sets are beyond the tie. Each other name of the best set is tied with what stands for it where
+/// the rest of that set is kept. False: some set is no choice of one name from each tie; its names are then in all of
+/// them.
+bool tell_ties(const std::vector<const Candidate*>& tied, Selection& out) {
+  const std::vector<std::string>& best = tied.front()->effects;
+  out.adopted = best;
   for (const Candidate* c : tied) std::erase_if(out.adopted, [&](const std::string& e) { return !has(c->effects, e); });
-  if (tied.size() < 2) return;
+  if (tied.size() < 2) return true;
   std::vector<std::vector<std::string>> lists;  // one per name of the best set that is not common
-  for (const std::string& e : tied.front()->effects)
+  for (const std::string& e : best)
     if (!has(out.adopted, e)) lists.push_back({e});
+  const auto add = [&](const Candidate& c, std::vector<std::string>& list) {
+    for (const std::string& e : c.effects)
+      if (!has(best, e) && !has(list, e)) list.push_back(e);
+  };
+  const auto replaced = [&](const Candidate& c) {
+    std::vector<std::vector<std::string>*> of;
+    for (auto& list : lists)
+      if (!has(c.effects, list.front())) of.push_back(&list);
+    return of;
+  };
   for (const Candidate* c : tied)
-    for (auto& list : lists) {
-      if (has(c->effects, list.front())) continue;  // this member of the best set is kept here
-      for (const std::string& e : c->effects)
-        if (!has(tied.front()->effects, e) && !has(list, e)) list.push_back(e);
-    }
+    if (const auto of = replaced(*c); of.size() == 1) add(*c, *of.front());
+  bool choices = true;
+  for (const Candidate* c : tied) {
+    const auto of = replaced(*c);
+    if (of.size() < 2) continue;
+    const auto in = [&](const std::string& e) {
+      return has(best, e) || std::ranges::any_of(of, [&](const auto* list) { return has(*list, e); });
+    };
+    const bool from_each = std::ranges::all_of(
+        of, [&](const auto* list) { return std::ranges::any_of(c->effects, [&](auto& e) { return has(*list, e); }); });
+    if (from_each && std::ranges::all_of(c->effects, in)) continue;
+    choices = false;
+    for (auto* list : of) add(*c, *list);
+  }
   // A list of one name is no tie: every rival set keeps that name, or the rivals are counted in another list.
   for (auto& list : lists)
     if (list.size() > 1) out.ties.push_back(list);
     else out.adopted.push_back(list.front());
   std::ranges::stable_sort(out.adopted, {}, order_of);
+  return choices;
 }
 
 }  // namespace
@@ -114,9 +137,9 @@ Selection select(const Problem& problem, const std::vector<const Parametrisation
       if (!all_in(c)) add(c);
       else if (s.likelier.empty()) s.likelier = c.effects;
     }
-    tell_ties(tied, s);
-    // Many sets without a name in common: the data do not name anything.
-    s.nameless = s.level > 1 && s.adopted.empty() && tied.size() > 4;
+    // Many sets without a name in common that are no choices from few ties: the data do not name anything.
+    const bool choices = tell_ties(tied, s);
+    s.nameless = s.level > 1 && s.adopted.empty() && tied.size() > 4 && !choices;
   }
   s.richest = search.richest();
   for (auto* list : {&search.singles, &search.pairs, &search.triples})

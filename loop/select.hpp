@@ -16,7 +16,8 @@ struct Selection {
   int level = 0;            ///< number of effects that the data ask for
   bool structured = false;  ///< the gate
   bool clean = true;        ///< nothing remains after `chosen`
-  bool nameless = false;    ///< many sets of effects tie and no name is common to them
+  bool nameless =
+      false;  ///< many sets of effects tie, without a name in common, and not as one choice from each of few ties
   /// Two effects, of which the chosen is one: likelier by more than a tie and not by as much as a second must be.
   std::vector<std::string> likelier;
   /// In words, what acts in proportion to the place in the session and does as well without it, chosen or as likely as

@@ -28,6 +28,7 @@ struct Source {
   const Column* column;
   Eigen::VectorXd x;  ///< SI, so that no formula hangs on a unit; NaN where missing
   double resolution;  ///< SI
+  double noise;       ///< declared, SI; 0: none
   double spread;
   bool fine;  ///< enough different values to show a formula with free numbers
 };
@@ -61,6 +62,8 @@ struct Formula {
   std::set<int> from;    ///< sources
   double residual = 0;   ///< root mean square on rows that were not fitted, without the worst tenth
   double tolerance = 0;  ///< what rounding of all columns allows
+  double trimmed = 1;    ///< what is left of that without the worst tenth
+  double declared = 0;   ///< what the declared noise of its columns makes of it; 0: none declares any
   int rows = 0;
   int beyond = 0;        ///< rows that miss by more than the column's own last digit and by no more than all rounding
   double cost = 0;       ///< less is likelier, as a deviance: misfit beyond rounding, terms, and who computes what
@@ -109,6 +112,9 @@ std::pair<double, double> bulk(std::vector<double> x) {
   return {x[beyond], x[x.size() - 1 - beyond]};
 }
 
+/// What is left of a deviation without the worst tenth: of noise, and more of one rounding alone.
+constexpr double kTrimmedNoise = 0.79, kTrimmedRounding = 0.9;
+
 /// Root mean square of all but the worst tenth: a few bad rows must not hide an identity.
 double trimmed_rms(std::vector<double> r) {
   if (r.empty()) return kInfinity;
@@ -120,7 +126,7 @@ double trimmed_rms(std::vector<double> r) {
 
 class Audit {
  public:
-  Audit(const Shots& shots, const Ball& ball) : ball_(ball) {
+  Audit(const Shots& shots, const Ball& ball, const std::map<std::string, double>& noise) : ball_(ball) {
     // Long sets: an evenly spread sample is enough to find a formula.
     const std::size_t step = std::max<std::size_t>(1, shots.rows() / 1500);
     std::vector<std::size_t> rows;
@@ -128,7 +134,13 @@ class Audit {
     for (std::size_t i = 0; i < sorted.size(); i += step) rows.push_back(sorted[i]);
     for (const Column& c : shots.columns) {
       if (!c.numeric || c.role == Role::bookkeeping) continue;
-      Source s{&c, Eigen::VectorXd(std::ptrdiff_t(rows.size())), c.resolution, 0, false};
+      const auto declared = noise.find(c.name);
+      Source s{&c,
+               Eigen::VectorXd(std::ptrdiff_t(rows.size())),
+               c.resolution,
+               declared == noise.end() ? 0 : declared->second * c.si,
+               0,
+               false};
       std::vector<double> seen;
       for (std::size_t k = 0; k < rows.size(); ++k) {
         s.x[std::ptrdiff_t(k)] = c.value[rows[k]];
@@ -222,8 +234,22 @@ class Audit {
 
   /// Residual of so many rows over what rounding leaves, at most: what is computed has rounding alone, to four standard
   /// errors of a scatter, and to a fifth for constants of the instrument's own. Noise of coarse columns is little more.
-  static double most_by_rounding(std::size_t rows) {
-    return std::clamp(1 + 4 / std::sqrt(2.0 * double(rows)), 1.2, 1.6);
+  /// Where their noise is declared, `rounding_alone` decides, and a formula of the instrument's own may be a curve.
+  static double most_by_rounding(const Formula& f, std::size_t rows) {
+    return (f.declared > 0 ? 1 : f.trimmed) * std::clamp(1 + 4 / std::sqrt(2.0 * double(rows)), 1.2, 1.6);
+  }
+
+  /// Rounding alone is likelier than the noise that its columns declare, with or without rounding, beyond chance. Of a
+  /// relation that the physics makes, coarse columns do not show more.
+  static bool rounding_alone(const Formula& f, std::size_t rows, double spread) {
+    if (!(f.declared > 0)) return true;
+    const auto likelihood = [](double deviation, double scatter) {
+      return -std::log(scatter) - 0.5 * std::pow(deviation / scatter, 2);
+    };
+    const double rounding = f.tolerance + kRoundOff * spread, noise = f.residual / kTrimmedNoise;
+    const double scatter = std::clamp(noise, std::max(f.declared, rounding), std::hypot(f.declared, rounding));
+    const double by_rounding = likelihood(f.residual / f.trimmed, rounding), by_noise = likelihood(noise, scatter);
+    return double(rows) * (by_rounding - by_noise) > kBeyondChance;
   }
 
   /// Judges y = f(sources): rounding of every column passed through f by differences.
@@ -232,7 +258,7 @@ class Audit {
              Formula& out) const {
     const Source& y = source(target);
     if (rows.empty()) return false;
-    std::vector<double> residual, wobbles, x(sources_.size());
+    std::vector<double> residual, wobbles, noises, uneven, x(sources_.size());
     for (const Eigen::Index i : rows) {
       for (const int k : from) x[std::size_t(k)] = source(k).x[i];
       residual.push_back(y.x[i] - f(x));
@@ -243,19 +269,32 @@ class Audit {
     if (!(out.residual < (1.6 / finer + 2e-9) * y.spread)) return false;
     for (const Eigen::Index i : rows) {
       for (const int k : from) x[std::size_t(k)] = source(k).x[i];
-      double wobble = y.resolution * y.resolution / 12;
-      for (const int k : from) {
-        const double h = 0.5 * source(k).resolution, at = x[std::size_t(k)];
-        x[std::size_t(k)] = at + h;
+      const auto variance_by = [&](int k, double deviation) {
+        const double at = x[std::size_t(k)];
+        x[std::size_t(k)] = at + deviation;
         const double up = f(x);
-        x[std::size_t(k)] = at - h;
-        wobble += (up - f(x)) * (up - f(x)) / 12;
+        x[std::size_t(k)] = at - deviation;
+        const double change = 0.5 * (up - f(x));
         x[std::size_t(k)] = at;
+        return change * change;
+      };
+      double wobble = std::pow(rounding_deviation(y.resolution), 2), squares = wobble * wobble,
+             noise = y.noise * y.noise;
+      for (const int k : from) {
+        const double by = variance_by(k, rounding_deviation(source(k).resolution));
+        wobble += by;
+        squares += by * by;
+        noise += variance_by(k, source(k).noise);
       }
       wobbles.push_back(wobble);
+      noises.push_back(noise);
+      // The tails of a sum of roundings: by its kurtosis between those of one of them and of noise.
+      uneven.push_back(wobble > 0 ? squares / (wobble * wobble) : 1);
     }
     // The typical row: a few rows next to a singularity of f must not excuse the others.
     out.tolerance = std::sqrt(median(std::move(wobbles)));
+    out.declared = std::sqrt(median(std::move(noises)));
+    out.trimmed = kTrimmedNoise + (kTrimmedRounding - kTrimmedNoise) * median(std::move(uneven));
     out.from = from;
     // The numbers of the formula are fitted: the edge is not sharper than they are.
     const double edge = 0.5 * y.resolution + kRoundOff * y.spread +
@@ -263,7 +302,7 @@ class Audit {
     out.beyond = int(std::ranges::count_if(
         residual, [&](double r) { return std::abs(r) > edge && std::abs(r) < 4 * out.tolerance; }));
     // Within rounding, and rounding itself far below how the column varies: the less so, the fewer numbers are free.
-    return out.residual < most_by_rounding(rows.size()) * out.tolerance + kRoundOff * y.spread &&
+    return out.residual < most_by_rounding(out, rows.size()) * out.tolerance + kRoundOff * y.spread &&
            out.tolerance * finer < y.spread;
   }
 
@@ -280,11 +319,13 @@ class Audit {
   /// Formulas of the field without free numbers.
   bool identity(int target, const std::vector<int>& use, Formula& best) const {
     const Column& y = *source(target).column;
-    const auto attempt = [&](const std::set<int>& from, std::string text, auto f) {
+    // `given`: columns state the same twice, whatever is declared of their noise.
+    const double spread = source(target).spread;
+    const auto attempt = [&](const std::set<int>& from, bool given, std::string text, auto f) {
       const auto rows = complete(target, from);
       if (rows.size() < kFewestRows) return false;
       Formula out;
-      if (!judge(target, from, 0, rows, f, out)) return false;
+      if (!judge(target, from, 0, rows, f, out) || (!given && !rounding_alone(out, rows.size(), spread))) return false;
       out.text = std::move(text);
       out.rows = int(rows.size());
       best = out;
@@ -294,7 +335,7 @@ class Audit {
     for (const Identity& i : kIdentities) {
       const int a = of(i.a, use), b = of(i.b, use);
       if ((i.of.empty() ? y.role == Role::other : y.stem == i.of) && a >= 0 && b >= 0 &&
-          attempt({a, b}, i.text, [&](V x) { return i.value(x[std::size_t(a)], x[std::size_t(b)]); }))
+          attempt({a, b}, true, i.text, [&](V x) { return i.value(x[std::size_t(a)], x[std::size_t(b)]); }))
         return true;
     }
     const int back = of("backspin", use), rate = of("spin_rate", use), launch = of("launch_angle", use),
@@ -302,7 +343,7 @@ class Audit {
     const int spin = back >= 0 ? back : rate;
     if (y.stem == "dynamic_loft" && launch >= 0 && speed >= 0 && spin >= 0) {
       const double arm = ball_.inertia_factor * ball_.radius;
-      if (attempt({launch, speed, spin},
+      if (attempt({launch, speed, spin}, false,
                   fmt::format("launch angle + asin({:.4g} m * spin / ball speed): the loft of a rolling ball", arm),
                   [&](V x) {
                     const double rim = arm * x[std::size_t(spin)] / x[std::size_t(speed)];
@@ -382,7 +423,8 @@ class Audit {
       Formula again;
       if (!judge(target, from, int(p), judged, f, out) || !judge(target, from, int(p), fitted, f, again)) return false;
       if (!(std::hypot(out.residual, again.residual) <
-            std::sqrt(2.0) * most_by_rounding(rows.size()) * out.tolerance + kRoundOff * y.spread))
+            std::sqrt(2.0) * most_by_rounding(out, rows.size()) * out.tolerance + kRoundOff * y.spread) ||
+          !rounding_alone(out, rows.size(), y.spread))
         return false;
       // Every term must matter: a source that could be left out is no source.
       for (std::ptrdiff_t j = 1; j < p; ++j) {
@@ -532,7 +574,7 @@ DerivedColumn derived_column(const Column& y, std::vector<std::string> from, std
 }
 
 std::vector<DerivedColumn> audit(const Shots& shots, const Ball& ball, const std::map<std::string, double>& noise) {
-  std::vector<DerivedColumn> found = Audit(shots, ball).run();
+  std::vector<DerivedColumn> found = Audit(shots, ball, noise).run();
   std::ranges::move(partly_derived(shots, found), std::back_inserter(found));
   std::ranges::move(predictable(shots, noise, found), std::back_inserter(found));
   return found;

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <map>
 #include <numeric>
+#include <span>
 
 #include "golf/dense.hpp"
 #include "golf/quantities.hpp"
@@ -20,10 +21,11 @@ namespace hosel::loop {
 namespace {
 
 constexpr std::size_t kMostRows = 240;
-constexpr double kSure = 30;      // least fall of the deviance,
-constexpr double kShare = 0.15;   // and share of it
-constexpr double kFaint = 1e-12;  // norm of whitened derivatives: nothing moves
-constexpr double kClean = 1.7;    // deviance per value that a slip of free size may leave
+constexpr double kSure = 30;        // least fall of the deviance,
+constexpr double kShare = 0.15;     // and share of it
+constexpr double kFaint = 1e-12;    // norm of whitened derivatives: nothing moves
+constexpr double kPartOfRows = 15;  // price of one of some forty parts
+constexpr double kClean = 1.7;      // deviance per value that a slip of free size may leave
 
 /// Quantities whose sign is a convention.
 bool has_sign(const Column& c) {
@@ -66,18 +68,18 @@ struct Columns::Slip {
   int column = 0, second = -1;
   double factor = 1, offset = 0;  ///< true value = factor * recorded + offset [SI]
   int rows = 0;                   ///< the true value stands so many rows below
-  std::vector<char> member;       ///< of a level shift: rows that are shifted; empty: all
-  std::string what;               ///< unit; where the shift begins
+  std::vector<char> member;       ///< rows that it holds on; empty: all
+  std::string what, where;        ///< unit; in words, the rows that it holds on
   double cost = 0;                ///< what a slip of free size, or an unusual one, must earn
   double deviance = 0;
   double criterion() const { return deviance + cost; }
-  bool disputed = false;  ///< physics does as well, which of a level shift changes there; or every group differs
+  bool disputed = false;  ///< physics does as well, which changes where it holds; or every group differs
 };
 
 /// Rows that share something: from a shot on, or one group.
 struct Columns::PartOfRows {
   std::vector<char> member;
-  std::string what;
+  std::string where, elsewhere;           ///< in words; the second is empty where the other rows are no part
   std::vector<std::vector<char>> others;  ///< the other groups, where it is one
 };
 
@@ -98,7 +100,11 @@ Columns::Columns(const ShotCase& c) : case_(c) {
   estimate_noise();
   as_recorded_ = deviance(values_, noise_, Model{}, {});
   try_constants();
-  if (quick()) try_sizes();
+  if (quick()) {
+    const std::vector<PartOfRows> parts = this->parts();
+    try_parts(parts);
+    try_sizes(parts);
+  }
   std::ranges::stable_sort(slips_, {}, &Slip::criterion);
 }
 
@@ -233,14 +239,19 @@ double Columns::log_scale(const Eigen::MatrixXd& values, const Eigen::MatrixXd& 
   return sum;
 }
 
+/// Of every row.
+Eigen::VectorXd Columns::losses(const Eigen::MatrixXd& r, const Eigen::MatrixXd& whitening) const {
+  const solvers::Loss loss = loss_of_shot(int(r.cols())).uncapped();
+  Eigen::VectorXd of_row(r.rows());
+  for (Eigen::Index i = 0; i < r.rows(); ++i)
+    of_row[i] = loss(r.row(i).allFinite() ? (whitening * r.row(i).transpose()).squaredNorm() : 1e6 * double(r.cols()));
+  return of_row;
+}
+
 double Columns::deviance(const Eigen::MatrixXd& values, const Eigen::VectorXd& noise, const Model& model,
                          const Eigen::VectorXd& p) const {
-  const Eigen::MatrixXd r = residuals(values, model, p), W = whitening(values, noise);
-  const solvers::Loss loss = loss_of_shot(int(r.cols())).uncapped();
-  double sum = log_scale(values, W);
-  for (Eigen::Index i = 0; i < r.rows(); ++i)
-    sum += loss(r.row(i).allFinite() ? (W * r.row(i).transpose()).squaredNorm() : 1e6 * double(r.cols()));
-  return sum;
+  const Eigen::MatrixXd W = whitening(values, noise);
+  return log_scale(values, W) + losses(residuals(values, model, p), W).sum();
 }
 
 void Columns::estimate_noise() {
@@ -356,6 +367,44 @@ void Columns::try_constants() {
   }
 }
 
+/// The same on a part of the rows, the part that says most: an instrument was set anew in the session.
+void Columns::try_parts(const std::vector<PartOfRows>& parts) {
+  const Eigen::MatrixXd W = whitening(values_, noise_);
+  const Eigen::VectorXd recorded = losses(residuals(values_, {}, {}), W);
+  std::vector<Slip> on_parts;
+  for (const Slip& whole : slips_) {
+    if ((whole.finding != "unit" && whole.finding != "sign") || whole.second >= 0) continue;
+    const bool output = whole.column >= int(inputs_.size());
+    // Where its noise was estimated, that of the written numbers goes with them. Their density, as for all rows.
+    const Eigen::MatrixXd V = whitening(values_, noise_of(whole));
+    Eigen::VectorXd better = recorded - losses(residuals(corrected(whole), {}, {}), V);
+    const Eigen::VectorXd scale = 2 * (V.diagonal().array() / W.diagonal().array()).log();
+    for (Eigen::Index i = 0; i < better.size(); ++i) {
+      for (Eigen::Index c = 0; c < scale.size(); ++c)
+        if (std::isfinite(values_(i, std::ptrdiff_t(inputs_.size()) + c))) better[i] += scale[c];
+      if (output && std::isfinite(values_(i, whole.column))) better[i] += 2 * std::log(std::abs(whole.factor));
+    }
+    Slip best = whole;
+    best.deviance = kInfinity;
+    best.cost += kPartOfRows;
+    for (const PartOfRows& part : parts)
+      for (const bool inside : {true, false}) {
+        if (!inside && part.elsewhere.empty()) continue;
+        std::vector<char> member = part.member;
+        if (!inside)
+          for (char& m : member) m = char(!m);
+        double deviance = as_recorded_;
+        for (Eigen::Index i = 0; i < better.size(); ++i) deviance -= member[std::size_t(i)] ? better[i] : 0;
+        if (!(deviance < best.deviance)) continue;
+        best.deviance = deviance;
+        best.member = std::move(member);
+        best.where = inside ? part.where : part.elsewhere;
+      }
+    if (best.deviance < kInfinity) on_parts.push_back(std::move(best));
+  }
+  std::ranges::move(on_parts, std::back_inserter(slips_));
+}
+
 namespace {
 
 /// The size t that brings whitened residuals z + j t down most, and their deviance: from the middle of what single
@@ -438,10 +487,8 @@ std::vector<Columns::PartOfRows> Columns::parts() const {
   for (Eigen::Index k = n / 6; n >= kFewestRows && k <= n - n / 6; k += std::max<Eigen::Index>(1, n / 60)) {
     std::vector<char> member(static_cast<std::size_t>(n), 0);
     for (Eigen::Index i = k; i < n; ++i) member[std::size_t(by_order[std::size_t(i)])] = 1;
-    parts.push_back(
-        {member,
-         fmt::format("from shot {} on", case_.shots.id[std::size_t(rows_[std::size_t(by_order[std::size_t(k)])])]),
-         {}});
+    const std::string& first = case_.shots.id[std::size_t(rows_[std::size_t(by_order[std::size_t(k)])])];
+    parts.push_back({member, fmt::format("from shot {} on", first), fmt::format("before shot {}", first), {}});
   }
   for (const Column& c : case_.shots.columns) {
     if (c.numeric || c.role == Role::output) continue;
@@ -457,7 +504,8 @@ std::vector<Columns::PartOfRows> Columns::parts() const {
       if (inside * 4 < n || inside * 4 > 3 * n) continue;
       std::vector<std::vector<char>> others = of;
       others.erase(others.begin() + std::ptrdiff_t(k));
-      parts.push_back({of[k], fmt::format("where {} is {}", c.name, g.name[k]), std::move(others)});
+      const auto is = [&](std::size_t group) { return fmt::format("where {} is {}", c.name, g.name[group]); };
+      parts.push_back({of[k], is(k), g.name.size() == 2 ? is(0) : "", std::move(others)});
     }
   }
   return parts;
@@ -480,7 +528,7 @@ std::map<std::string, double> Columns::by_contact(const Eigen::MatrixXd& z, cons
     Eigen::MatrixXd by;
     double largest;
   };
-  const auto moving = [&](const std::array<ContactChange, 2>& of) {
+  const auto moving = [&](std::span<const ContactChange> of) {
     std::vector<Change> changes;
     for (const ContactChange& c : of)
       if (Eigen::MatrixXd by = sensitivity(c.form) * W.transpose(); !(by.norm() < kFaint))
@@ -494,12 +542,12 @@ std::map<std::string, double> Columns::by_contact(const Eigen::MatrixXd& z, cons
       const Eigen::MatrixXd even = members_only(c.by, part.member);
       if (left.size())
         if (const auto [size, value] = fitted(left, even); std::abs(size) <= c.largest)
-          rival(part.what, value + case_.rules.parameter_cost);
+          rival(part.where, value + case_.rules.parameter_cost);
       const auto [size, value] = fitted(z, even);
       if (std::abs(size) > c.largest) continue;
-      rival(part.what, value);
+      rival(part.where, value);
       const Eigen::MatrixXd off_centre = square.asDiagonal() * even, beside = z + size * even;
-      if (off_centre.norm() > kFaint) rival(part.what, fitted(beside, off_centre).second + case_.rules.parameter_cost);
+      if (off_centre.norm() > kFaint) rival(part.where, fitted(beside, off_centre).second + case_.rules.parameter_cost);
       left = beside;
     }
   }
@@ -510,9 +558,8 @@ std::map<std::string, double> Columns::by_contact(const Eigen::MatrixXd& z, cons
 
 /// Slips whose size is found: offset, scale, and offset of a part of the session. All by linear algebra about the
 /// recorded values, the best of them again about themselves.
-void Columns::try_sizes() {
+void Columns::try_sizes(const std::vector<PartOfRows>& parts) {
   const Eigen::MatrixXd W = whitening(values_, noise_), z = residuals(values_, {}, {}) * W.transpose();
-  const std::vector<PartOfRows> parts = this->parts();
   std::vector<Slip> trials;
   for (int k = 0; k < int(columns_.size()); ++k) {
     const Eigen::MatrixXd J = sensitivity(values_, k) * W.transpose();
@@ -527,15 +574,20 @@ void Columns::try_sizes() {
     const Eigen::VectorXd x = values_.col(k).unaryExpr([](double v) { return std::isfinite(v) ? v : 0.0; });
     consider({.finding = "scale", .column = k, .cost = 9}, x.asDiagonal() * J);
     for (const PartOfRows& part : parts) {
-      Slip shift{.finding = "level-shift", .column = k, .member = part.member, .what = part.what, .cost = 15};
+      Slip shift{
+          .finding = "level-shift", .column = k, .member = part.member, .where = part.where, .cost = kPartOfRows};
       shift.disputed = spread_over(z, J, part.others);
       consider(std::move(shift), members_only(J, part.member));
     }
   }
   const std::map<std::string, double> physics = by_contact(z, W, parts);
-  for (Slip& t : trials)
-    if (const auto it = physics.find(t.what); it != physics.end())
+  const auto dispute = [&](Slip& t) {
+    if (const auto it = physics.find(t.where); it != physics.end())
       t.disputed = t.disputed || it->second + t.cost < t.criterion() + case_.rules.tie;
+  };
+  std::ranges::for_each(trials, dispute);
+  for (Slip& s : slips_)
+    if (!s.where.empty()) dispute(s);
   std::ranges::stable_sort(trials, {}, &Slip::criterion);
   // The best few, of different columns or kinds, about themselves.
   std::vector<Slip> kept;
@@ -564,10 +616,11 @@ void Columns::try_sizes() {
 std::string Columns::text(const Slip& s, bool second) const {
   const Column& c = *columns_[std::size_t(second ? s.second : s.column)];
   const std::string unit = split_unit(c.name).unit ? std::string(split_unit(c.name).unit->suffix) : "";
+  const std::string where = s.where.empty() ? "" : " " + s.where;
   if (s.finding == "unit")
-    return fmt::format("{} reads like {}: ratio {:.4g} to what the other columns allow", c.name, s.what,
+    return fmt::format("{} reads like {}{}: ratio {:.4g} to what the other columns allow", c.name, s.what, where,
                        s.factor < 1 ? 1 / s.factor : s.factor);
-  if (s.finding == "sign") return fmt::format("{} reads with the other sign", c.name);
+  if (s.finding == "sign") return fmt::format("{} reads with the other sign{}", c.name, where);
   if (s.finding == "rows") return fmt::format("{} is that of the row {}", c.name, s.rows > 0 ? "before" : "after");
   if (s.finding == "swapped")
     return fmt::format("{} reads like {}: the two columns are swapped", c.name,
@@ -577,7 +630,7 @@ std::string Columns::text(const Slip& s, bool second) const {
   const std::string by =
       fmt::format("{:.4g} {} too {}", std::abs(s.offset) / c.si, unit, s.offset < 0 ? "high" : "low");
   if (s.finding == "offset") return fmt::format("{} reads {} throughout", c.name, by);
-  return fmt::format("{} reads {} {}", c.name, by, s.what);
+  return fmt::format("{} reads {}{}", c.name, by, where);
 }
 
 std::vector<WrongColumn> Columns::contradicted(const std::vector<Fit>& rivals) const {
@@ -590,7 +643,7 @@ std::vector<WrongColumn> Columns::contradicted(const std::vector<Fit>& rivals) c
       library = std::min(library, deviance(values_, noise_, f.model, f.p) + case_.rules.parameter_cost * f.size() +
                                       case_.rules.further_gain * (double(f.model.forms.size()) - 1));
   const auto holds = [&](const Slip& s) {
-    const bool free = s.finding == "offset" || s.finding == "scale" || s.finding == "level-shift";
+    const bool free = !s.where.empty() || s.finding == "offset" || s.finding == "scale";
     const double base = as_recorded_ - scale;
     return as_recorded_ - s.criterion() > std::max(kSure, kShare * base) && library - s.criterion() > case_.rules.tie &&
            (!free || s.deviance - scale < kClean * values);

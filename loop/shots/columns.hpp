@@ -43,6 +43,7 @@ class Columns {
   Eigen::MatrixXd sensitivity(const Parametrisation& form) const;
   double deviance(const Eigen::MatrixXd& values, const Eigen::VectorXd& noise, const Model& model,
                   const Eigen::VectorXd& p) const;
+  Eigen::VectorXd losses(const Eigen::MatrixXd& residuals, const Eigen::MatrixXd& whitening) const;
   double log_scale(const Eigen::MatrixXd& values, const Eigen::MatrixXd& whitening) const;
   Eigen::MatrixXd whitening(const Eigen::MatrixXd& values, const Eigen::VectorXd& noise) const;
   Eigen::VectorXd noise_of(const Slip& slip) const;
@@ -54,7 +55,8 @@ class Columns {
   std::vector<PartOfRows> parts() const;
   std::map<std::string, double> by_contact(const Eigen::MatrixXd& z, const Eigen::MatrixXd& W,
                                            const std::vector<PartOfRows>& parts) const;
-  void try_sizes();
+  void try_parts(const std::vector<PartOfRows>& parts);
+  void try_sizes(const std::vector<PartOfRows>& parts);
   std::string text(const Slip& slip, bool second) const;
 
   const ShotCase& case_;

@@ -16,29 +16,54 @@ ContactChange changed(double ContactLaw::*of, double largest) {
   return c;
 }
 
-/// 1: across the face; 2: up it.
+/// A direction in the face, 1 across it and 2 up it, and the axis about which a force along it turns the ball.
+struct Direction {
+  Vec3 along, about;
+
+  Direction(const Blow& blow, int axis) {
+    const FirstContact g = first_contact(blow);
+    const Vec3 axis_of_face = g.face_axes.col(axis);
+    along = (axis_of_face - axis_of_face.dot(g.normal) * g.normal).normalized();
+    about = g.normal.cross(along);
+  }
+  /// A share of a change of the launch, its part by impulse along this direction alone.
+  void add(double share, const Vec3& velocity, const Vec3& spin, Launch& launch) const {
+    launch.velocity += share * along.dot(velocity) * along;
+    launch.spin += share * about.dot(spin) * about;
+  }
+};
+
 ContactChange returned_along(int axis) {
   ContactChange c = unchanged(0.8);
   c.form.after = [axis](std::span<const double> p, const Shot& s, Launch& launch) {
     Blow with = s.blow;
     with.contact.tangential_restitution += p[0];
     const Launch a = closed_form().launch(with), b = closed_form().launch(s.blow);
-    const FirstContact g = first_contact(s.blow);
-    const Vec3 axis_of_face = g.face_axes.col(axis),
-               along = (axis_of_face - axis_of_face.dot(g.normal) * g.normal).normalized(),
-               about = g.normal.cross(along);
-    launch.velocity += along.dot(a.velocity - b.velocity) * along;
-    launch.spin += about.dot(a.spin - b.spin) * about;
+    Direction(s.blow, axis).add(1, a.velocity - b.velocity, a.spin - b.spin, launch);
+  };
+  return c;
+}
+
+ContactChange transmitted_along(int axis) {
+  ContactChange c = unchanged(0.8);
+  c.form.after = [axis](std::span<const double> p, const Shot& s, Launch& launch) {
+    Direction(s.blow, axis).add(p[0], launch.velocity, launch.spin, launch);
   };
   return c;
 }
 
 }  // namespace
 
-std::array<ContactChange, 2> of_another_ball() {
-  return {changed(&ContactLaw::restitution, 0.1), changed(&ContactLaw::tangential_restitution, 0.3)};
+std::array<ContactChange, 3> of_another_ball() {
+  ContactChange inertia = unchanged(0.06);
+  inertia.form.before = [](std::span<const double> p, Shot& s) { s.blow.ball.inertia_factor += p[0]; };
+  inertia.form.parameters.front().scale = 0.01;
+  return {changed(&ContactLaw::restitution, 0.1), changed(&ContactLaw::tangential_restitution, 0.3),
+          std::move(inertia)};
 }
 
-std::array<ContactChange, 2> of_one_direction() { return {returned_along(1), returned_along(2)}; }
+std::array<ContactChange, 4> of_one_direction() {
+  return {returned_along(1), returned_along(2), transmitted_along(1), transmitted_along(2)};
+}
 
 }  // namespace hosel::loop

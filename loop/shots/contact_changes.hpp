@@ -12,9 +12,10 @@ struct ContactChange {
   double largest;        ///< that is plausible
 };
 
-/// Another ball: restitution, tangential restitution.
-std::array<ContactChange, 2> of_another_ball();
-/// Tangential energy comes back along one axis of the face alone: across it, up it.
-std::array<ContactChange, 2> of_one_direction();
+/// Another ball: restitution, tangential restitution, inertia.
+std::array<ContactChange, 3> of_another_ball();
+/// Along one axis of the face alone, across it or up it: tangential energy comes back; a share of the impulse is not
+/// transmitted.
+std::array<ContactChange, 4> of_one_direction();
 
 }  // namespace hosel::loop

@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "golf/dense.hpp"
+#include "golf/first_contact.hpp"
 #include "golf/parallel.hpp"
 #include "loop/rules.hpp"
 #include "loop/shots/way.hpp"
@@ -46,6 +47,19 @@ Field::Basis basis(const Eigen::MatrixXd& covariance, const std::vector<int>& kn
   const double whole = b.variance.sum() / double(knots.size());
   if (whole > 0) b.variance /= whole;
   return b;
+}
+
+constexpr std::string_view kIncidence = "angle of incidence";
+
+/// Between the head's velocity where it meets the ball and the face's normal [rad]: what the contact sees of loft,
+/// attack angle, face and path.
+Eigen::VectorXd incidence(const ShotModel& model) {
+  Eigen::VectorXd x(model.shots());
+  for (int i = 0; i < model.shots(); ++i) {
+    const FirstContact at = first_contact(model.trial(i).blow);
+    x[i] = std::atan2(at.slip().norm(), at.approach.dot(at.normal));
+  }
+  return x;
 }
 
 std::vector<Field> fields(const ShotModel& model, const Shots& shots, const std::vector<int>& row_of,
@@ -112,6 +126,7 @@ std::vector<Field> fields(const ShotModel& model, const Shots& shots, const std:
     }
     all.push_back(std::move(step));
   }
+  if (const Eigen::VectorXd x = scaled(incidence(model)); x.size()) smooth(std::string(kIncidence), {x}, false);
   if (toe.size() && high.size()) {
     smooth(shots.find_stem(stem(Input::impact_toe))->name, {toe, high}, true);
     // A step that differs over the place of impact: a crack, a weight come loose.
@@ -240,7 +255,8 @@ std::vector<std::string> names_of(const Way& way, const Field& field, const Shot
   using Through = OneFunction::Through;
   std::optional<OneFunction> function;
   if (field.place || is(Input::impact_toe) || is(Input::impact_high)) function.emplace().of = OneFunction::Of::place;
-  else if (is(Input::club_speed) || is(Input::dynamic_loft) || is(Input::attack_angle)) function.emplace();
+  else if (is(Input::club_speed) || is(Input::dynamic_loft) || is(Input::attack_angle) || field.along == kIncidence)
+    function.emplace();
   if (function) switch (way.kind) {
       case Way::Kind::normal: function->through = Through::normal_restitution; break;
       case Way::Kind::tangential: function->through = Through::tangential_restitution; break;

@@ -17,8 +17,10 @@ namespace hosel::loop {
 namespace {
 
 constexpr std::size_t kLeastRows = 40;
-constexpr std::ptrdiff_t kRowsPerNumber = 5;  // fewer rows are fitted by chance,
+constexpr std::ptrdiff_t kRowsFitted = 5;     // rows for every coefficient,
+constexpr std::ptrdiff_t kRowsPerNumber = 7;  // of those that a function holds on: fewer agree by chance,
 constexpr std::ptrdiff_t kRowsIfPlain = 3;    // and fewer to far less than the noise
+constexpr double kLeastShare = 0.25;          // some rows of very many agree with one of so many functions
 constexpr std::size_t kRowsAsked = 400;       // an evenly spread sample shows a function
 constexpr std::size_t kMostColumns = 4;
 constexpr double kBadRows = 0.1;        // so many may depart from what holds on all rows
@@ -96,7 +98,8 @@ class Predictable {
     const double chance = std::log(double(tried_));
     const auto shown = [&](const Smooth& f) {
       const bool enough = f.weight.sum() >= double((f.plain ? kRowsIfPlain : kRowsPerNumber) * f.coefficients.size());
-      return f.gain > chance && f.evidence > kBeyondChance + chance && enough ? f.gain : -kInfinity;
+      return f.gain > chance && f.evidence > kBeyondChance + chance && enough && f.share > kLeastShare ? f.gain
+                                                                                                       : -kInfinity;
     };
     const auto found = std::ranges::max_element(all, {}, shown);
     if (found == all.end() || !std::isfinite(shown(*found))) return {};
@@ -269,7 +272,7 @@ class Predictable {
     std::vector<Smooth> all;
     for (const std::vector<int>& from : sets) {
       const MatrixXd a = features(from, 2);
-      if (n_ < kRowsPerNumber * a.cols()) continue;
+      if (n_ < kRowsFitted * a.cols()) continue;
       Smooth f{.of = target, .from = from, .degree = 2, .coefficients = {}, .weight = VectorXd::Ones(n_)};
       improve(f, a, y, elsewhere, 10, least);
       f.gain = f.likelihood - numbers * double(a.cols());
@@ -280,7 +283,7 @@ class Predictable {
     for (Smooth& f : all)
       for (const int degree : {2, 3}) {
         const MatrixXd a = features(f.from, degree);
-        if (n_ < kRowsPerNumber * a.cols()) continue;
+        if (n_ < kRowsFitted * a.cols()) continue;
         Smooth finer = f;
         finer.degree = degree;
         improve(finer, a, y, elsewhere, 20, least);

@@ -31,7 +31,8 @@ struct RemainderInputs {
       for (const int i : rows)
         if (std::isfinite(l.x[i])) seen.push_back(l.x[i]);
       if (seen.size() < rows.size() / 2 || seen.size() < 3) continue;
-      const double mean = Eigen::Map<Eigen::VectorXd>(seen.data(), std::ptrdiff_t(seen.size())).mean();
+      // In the order of the rows: Eigen's order depends on where the numbers lie in memory.
+      const double mean = std::accumulate(seen.begin(), seen.end(), 0.0) / double(seen.size());
       double square = 0;
       for (const double v : seen) square += (v - mean) * (v - mean) / double(seen.size());
       if (!varies(std::sqrt(square), mean)) continue;
