@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "app/library.hpp"
 #include "app/offer.hpp"
 #include "app/read_blow.hpp"
 #include "app/read_options.hpp"
@@ -22,7 +23,7 @@ struct Set {
   models::FeImpactOptions fe;
   std::vector<Blow> blows;
   std::vector<double> lofts;         ///< of the grid [rad]
-  std::vector<std::string> faces;    ///< for which the set is
+  std::vector<std::string> faces;    ///< for which the set is, beside the head's own
   std::vector<std::string> changes;  ///< of the case
 };
 
@@ -102,8 +103,13 @@ class CalibrateReducedJob final : public Job {
     Set set;
     Blow base = read_blow(root, models);
     set.fe = read_options(root, models, base).fe;
-    if (auto face = root.optional_table("face"); face && face->has("name"))
-      set.faces.push_back(face->text({"name", "a face of the library (`hosel list`)"}));
+    // The head's own face is what a set without one is for, written or not.
+    if (auto face = root.optional_table("face"); face && face->has("name")) {
+      const std::string name = face->text({"name", "a face of the library (`hosel list`)"});
+      Table club = root.table("head");
+      const auto head = named_entry(club, "name", Shelf::heads);
+      if (!head || library_head(*head).face != name) set.faces.push_back(name);
+    }
     Table t = root.tables("sets")[index];
     set.name = t.text({"name", "of the set of parameters"});
     set.changes =
