@@ -581,13 +581,13 @@ void Columns::try_sizes(const std::vector<PartOfRows>& parts) {
     }
   }
   const std::map<std::string, double> physics = by_contact(z, W, parts);
-  const auto dispute = [&](Slip& t) {
+  const auto dispute = [&](Slip& t, double scale) {
     if (const auto it = physics.find(t.where); it != physics.end())
-      t.disputed = t.disputed || it->second + t.cost < t.criterion() + case_.rules.tie;
+      t.disputed = t.disputed || it->second + scale + t.cost < t.criterion() + case_.rules.tie;
   };
-  std::ranges::for_each(trials, dispute);
-  for (Slip& s : slips_)
-    if (!s.where.empty()) dispute(s);
+  for (Slip& t : trials) dispute(t, 0);
+  for (Slip& s : slips_)  // whose deviance has the density's scale
+    if (!s.where.empty()) dispute(s, log_scale(values_, W));
   std::ranges::stable_sort(trials, {}, &Slip::criterion);
   // The best few, of different columns or kinds, about themselves.
   std::vector<Slip> kept;
