@@ -7,9 +7,11 @@
 import argparse
 import dataclasses
 import json
+import os
 import pathlib
 import zlib
 
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # before NumPy: of small matrices, threads wait for each other
 import numpy as np
 
 import physics

@@ -5,11 +5,13 @@ import argparse
 import csv
 import importlib.util
 import json
+import os
 import pathlib
 import subprocess
 import sys
 import tempfile
 
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # before NumPy: of small matrices, threads wait for each other
 import numpy as np
 
 import generate
