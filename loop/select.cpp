@@ -130,8 +130,15 @@ Selection select(const Problem& problem, const std::vector<const Parametrisation
     const auto all_in = [&](const Candidate& c) {
       return std::ranges::all_of(best.effects, [&](auto& e) { return has(c.effects, e); });
     };
+    // With another tied set in it, it is that set and more.
+    const std::vector<const Candidate*> as_large = tied;
+    const auto more = [&](const Candidate& c) {
+      return std::ranges::any_of(as_large, [&](const Candidate* t) {
+        return std::ranges::all_of(t->effects, [&](const std::string& e) { return has(c.effects, e); });
+      });
+    };
     for (const Candidate& c : search.triples)
-      if (c.effects.size() > best.effects.size() && !all_in(c)) add(c);
+      if (c.effects.size() > best.effects.size() && !more(c)) add(c);
     for (const Candidate& c : search.pairs) {
       if (s.level > 1 || c.fit.at_bound || !(c.criterion + rules.tie < best.criterion)) continue;
       if (!all_in(c)) add(c);
