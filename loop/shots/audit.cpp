@@ -239,8 +239,8 @@ class Audit {
     return (f.declared > 0 ? 1 : f.trimmed) * std::clamp(1 + 4 / std::sqrt(2.0 * double(rows)), 1.2, 1.6);
   }
 
-  /// Rounding alone is likelier than the noise that its columns declare, with or without rounding, beyond chance. Of a
-  /// relation that the physics makes, coarse columns do not show more.
+  /// Rounding alone is likelier than the noise that its columns declare, with or without rounding, beyond chance: a
+  /// ball that rolls obeys a relation too, and coarse columns that are measured miss it by little more than rounding.
   static bool rounding_alone(const Formula& f, std::size_t rows, double spread) {
     if (!(f.declared > 0)) return true;
     const auto likelihood = [](double deviation, double scatter) {

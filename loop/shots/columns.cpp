@@ -7,9 +7,11 @@
 #include <cmath>
 #include <map>
 #include <numeric>
+#include <set>
 #include <span>
 
 #include "golf/dense.hpp"
+#include "golf/parallel.hpp"
 #include "golf/quantities.hpp"
 #include "loop/deviation.hpp"
 #include "loop/rules.hpp"
@@ -25,6 +27,7 @@ constexpr double kSure = 30;        // least fall of the deviance,
 constexpr double kShare = 0.15;     // and share of it
 constexpr double kFaint = 1e-12;    // norm of whitened derivatives: nothing moves
 constexpr double kPartOfRows = 15;  // price of one of some forty parts
+constexpr double kNoBlow = 1e3;     // noise units of a value that no blow can have
 constexpr double kClean = 1.7;      // deviance per value that a slip of free size may leave
 
 /// Quantities whose sign is a convention.
@@ -81,6 +84,19 @@ struct Columns::PartOfRows {
   std::vector<char> member;
   std::string where, elsewhere;           ///< in words; the second is empty where the other rows are no part
   std::vector<std::vector<char>> others;  ///< the other groups, where it is one
+
+  struct Side {
+    std::vector<char> member;
+    std::string where;
+  };
+  /// The part, and the other rows where they are one too.
+  std::vector<Side> sides() const {
+    std::vector<Side> both{{member, where}};
+    if (elsewhere.empty()) return both;
+    both.push_back({member, elsewhere});
+    for (char& m : both.back().member) m = char(!m);
+    return both;
+  }
 };
 
 Columns::~Columns() = default;
@@ -244,7 +260,8 @@ Eigen::VectorXd Columns::losses(const Eigen::MatrixXd& r, const Eigen::MatrixXd&
   const solvers::Loss loss = loss_of_shot(int(r.cols())).uncapped();
   Eigen::VectorXd of_row(r.rows());
   for (Eigen::Index i = 0; i < r.rows(); ++i)
-    of_row[i] = loss(r.row(i).allFinite() ? (whitening * r.row(i).transpose()).squaredNorm() : 1e6 * double(r.cols()));
+    of_row[i] = loss(r.row(i).allFinite() ? (whitening * r.row(i).transpose()).squaredNorm()
+                                          : std::pow(kNoBlow, 2) * double(r.cols()));
   return of_row;
 }
 
@@ -388,17 +405,13 @@ void Columns::try_parts(const std::vector<PartOfRows>& parts) {
     best.deviance = kInfinity;
     best.cost += kPartOfRows;
     for (const PartOfRows& part : parts)
-      for (const bool inside : {true, false}) {
-        if (!inside && part.elsewhere.empty()) continue;
-        std::vector<char> member = part.member;
-        if (!inside)
-          for (char& m : member) m = char(!m);
+      for (PartOfRows::Side& side : part.sides()) {
         double deviance = as_recorded_;
-        for (Eigen::Index i = 0; i < better.size(); ++i) deviance -= member[std::size_t(i)] ? better[i] : 0;
+        for (Eigen::Index i = 0; i < better.size(); ++i) deviance -= side.member[std::size_t(i)] ? better[i] : 0;
         if (!(deviance < best.deviance)) continue;
         best.deviance = deviance;
-        best.member = std::move(member);
-        best.where = inside ? part.where : part.elsewhere;
+        best.member = std::move(side.member);
+        best.where = std::move(side.where);
       }
     if (best.deviance < kInfinity) on_parts.push_back(std::move(best));
   }
@@ -536,21 +549,22 @@ std::map<std::string, double> Columns::by_contact(const Eigen::MatrixXd& z, cons
     return changes;
   };
   const std::vector<Change> of_ball = moving(of_another_ball());
-  for (const PartOfRows& part : parts) {
+  const auto of_side = [&](const PartOfRows::Side& side) {
     Eigen::MatrixXd left;  // by the first change: another ball differs in both
     for (const Change& c : of_ball) {
-      const Eigen::MatrixXd even = members_only(c.by, part.member);
+      const Eigen::MatrixXd even = members_only(c.by, side.member);
       if (left.size())
         if (const auto [size, value] = fitted(left, even); std::abs(size) <= c.largest)
-          rival(part.where, value + case_.rules.parameter_cost);
+          rival(side.where, value + case_.rules.parameter_cost);
       const auto [size, value] = fitted(z, even);
       if (std::abs(size) > c.largest) continue;
-      rival(part.where, value);
+      rival(side.where, value);
       const Eigen::MatrixXd off_centre = square.asDiagonal() * even, beside = z + size * even;
-      if (off_centre.norm() > kFaint) rival(part.where, fitted(beside, off_centre).second + case_.rules.parameter_cost);
+      if (off_centre.norm() > kFaint) rival(side.where, fitted(beside, off_centre).second + case_.rules.parameter_cost);
       left = beside;
     }
-  }
+  };
+  for (const PartOfRows& part : parts) std::ranges::for_each(part.sides(), of_side);
   for (const Change& c : moving(of_one_direction()))
     if (const auto [size, value] = fitted(z, c.by); std::abs(size) <= c.largest) rival("", value);
   return best;
@@ -633,21 +647,71 @@ std::string Columns::text(const Slip& s, bool second) const {
   return fmt::format("{} reads {}{}", c.name, by, where);
 }
 
-std::vector<WrongColumn> Columns::contradicted(const std::vector<Fit>& rivals) const {
+/// The least criterion of the likeliest rivals and of the other forms of their effects, all fitted to the rows that
+/// slips are tried on.
+double Columns::library(const std::vector<Fit>& rivals, const std::vector<Parametrisation>& forms) const {
+  constexpr std::size_t likeliest = 6;
+  const auto price = [&](const Model& m) {
+    return case_.rules.parameter_cost * m.size() + case_.rules.further_gain * (double(m.forms.size()) - 1);
+  };
+  std::vector<std::pair<double, const Fit*>> order;
+  for (const Fit& f : rivals)
+    if (!f.at_bound) order.emplace_back(deviance(values_, noise_, f.model, f.p) + price(f.model), &f);
+  std::ranges::stable_sort(order, {}, [](const auto& o) { return o.first; });
+  if (order.size() > likeliest) order.resize(likeliest);
+  std::vector<std::pair<Model, Eigen::VectorXd>> from;
+  std::set<std::string> effects;
+  double least = as_recorded_;
+  for (const auto& [value, f] : order) {
+    least = std::min(least, value);
+    from.emplace_back(f->model, f->p);
+    if (f->model.forms.size() == 1) effects.insert(f->model.forms.front()->effect);
+  }
+  for (const Parametrisation& form : forms)
+    if (effects.contains(form.effect) && !form.threshold)
+      from.emplace_back(Model{{&form}}, Eigen::VectorXd::Zero(Eigen::Index(form.parameters.size())));
+
+  const Eigen::MatrixXd W = whitening(values_, noise_);
+  const Eigen::Index width = W.rows();
+  std::vector<double> found(from.size(), kInfinity);
+  for_all(std::size_t(0), from.size(), [&](std::size_t k) {
+    const auto& [model, start] = from[k];
+    if (model.size() == 0) return;
+    solvers::LeastSquares problem{.residuals = int(values_.rows() * width)};
+    Eigen::VectorXd scale(model.size());
+    for (const Parameter* q : model.parameters()) {
+      scale[Eigen::Index(problem.bounds.size())] = q->scale;
+      problem.bounds.push_back({q->min / q->scale, q->max / q->scale, 1});
+    }
+    problem.loss = loss_of_shot(int(width)).uncapped();
+    problem.value = [&](const Eigen::VectorXd& p, Eigen::VectorXd& z) {
+      const Eigen::MatrixXd r = residuals(values_, model, p.cwiseProduct(scale)) * W.transpose();
+      z = r.transpose().reshaped().unaryExpr([](double x) { return std::isfinite(x) ? x : kNoBlow; });
+      return true;
+    };
+    problem.step = 0.1;  // of what matters: the blow is nearly linear in it
+    const auto at = solvers::minimise(problem, start.cwiseQuotient(scale), {.iterations = 6, .cost = 1e-4});
+    if (at && std::ranges::none_of(solvers::at_bounds(at->parameters, problem.bounds), std::identity{}))
+      found[k] = log_scale(values_, W) + 2 * at->cost + price(model);
+  });
+  found.push_back(least);
+  return std::ranges::min(found);
+}
+
+std::vector<WrongColumn> Columns::contradicted(const std::vector<Fit>& rivals,
+                                               const std::vector<Parametrisation>& forms) const {
   if (slips_.empty()) return {};
   const double values = double(values_.rightCols(std::ptrdiff_t(outputs_.size())).array().isFinite().count());
   const double scale = log_scale(values_, whitening(values_, noise_));
   double library = as_recorded_;
-  for (const Fit& f : rivals)
-    if (quick() && !f.at_bound)
-      library = std::min(library, deviance(values_, noise_, f.model, f.p) + case_.rules.parameter_cost * f.size() +
-                                      case_.rules.further_gain * (double(f.model.forms.size()) - 1));
   const auto holds = [&](const Slip& s) {
     const bool free = !s.where.empty() || s.finding == "offset" || s.finding == "scale";
     const double base = as_recorded_ - scale;
     return as_recorded_ - s.criterion() > std::max(kSure, kShare * base) && library - s.criterion() > case_.rules.tie &&
            (!free || s.deviance - scale < kClean * values);
   };
+  if (std::ranges::none_of(slips_, holds)) return {};
+  if (quick()) library = this->library(rivals, forms);
   const auto best = std::ranges::find_if(slips_, holds);
   if (best == slips_.end() || best->criterion() > slips_.front().criterion() + case_.rules.tie || best->disputed)
     return {};

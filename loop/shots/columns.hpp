@@ -27,8 +27,9 @@ class Columns {
   explicit Columns(const ShotCase& c);
   ~Columns();
   /// Those that contradict their header, where no fit among `rivals` (effects of the library inside their plausible
-  /// range) does nearly as well, the column in its header's sense.
-  std::vector<WrongColumn> contradicted(const std::vector<Fit>& rivals) const;
+  /// range) does nearly as well, the column in its header's sense. `forms`: of these effects.
+  std::vector<WrongColumn> contradicted(const std::vector<Fit>& rivals,
+                                        const std::vector<Parametrisation>& forms) const;
 
  private:
   struct Slip;
@@ -44,6 +45,7 @@ class Columns {
   double deviance(const Eigen::MatrixXd& values, const Eigen::VectorXd& noise, const Model& model,
                   const Eigen::VectorXd& p) const;
   Eigen::VectorXd losses(const Eigen::MatrixXd& residuals, const Eigen::MatrixXd& whitening) const;
+  double library(const std::vector<Fit>& rivals, const std::vector<Parametrisation>& forms) const;
   double log_scale(const Eigen::MatrixXd& values, const Eigen::MatrixXd& whitening) const;
   Eigen::MatrixXd whitening(const Eigen::MatrixXd& values, const Eigen::VectorXd& noise) const;
   Eigen::VectorXd noise_of(const Slip& slip) const;

@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <boost/math/distributions/binomial.hpp>
 #include <cmath>
+#include <numeric>
 
 #include "loop/deviation.hpp"
 #include "loop/rules.hpp"
@@ -587,8 +589,16 @@ ShotProblem::FarOff ShotProblem::far_off(const Selection& s) const {
     out.lost += square > loss.cap;
     out.rows += square > loss.knee;
   }
-  for (const auto& [column, rows] : of_column)
+  const int single =
+      std::accumulate(of_column.begin(), of_column.end(), 0, [](int n, auto& c) { return n + c.second; });
+  for (const auto& [column, rows] : of_column) {
     if (2 * rows > out.rows) out.column = column;
+    const boost::math::binomial chance(single, 1 / double(uses_.size()));  // any column as likely
+    if (!(double(uses_.size()) * cdf(complement(chance, rows - 1)) < case_.rules.gate)) continue;
+    out.alike = column;
+    out.share = fmt::format("{} of {} flagged rows contradict the others in this column, too many for single slips",
+                            rows, single);
+  }
   out.all = int(flags_.size() + used.size());
   out.many = out.rows > std::max(3.0, kMany * out.all);
   return out;
@@ -628,6 +638,7 @@ std::vector<Location> ShotProblem::doubts(const Selection& s) const {
                                 "is no explanation of the set",
                                 100 * share)});
   else if (far.many && (s.level > 0 || !far.column.empty())) told.push_back({"", far.column, far.said()});
+  else if (s.level == 0 && !far.alike.empty()) told.push_back({"", far.alike, far.share});
   return told;
 }
 

@@ -26,7 +26,7 @@ LoopResult pass(const ShotCase& c, const Columns& columns, const std::vector<Der
   std::vector<Fit> rivals{study.selection.chosen, study.selection.richest};
   for (const Candidate& candidate : study.selection.candidates) rivals.push_back(candidate.fit);
   if (rivals.size() > 30) rivals.resize(30);
-  result.columns = columns.contradicted(rivals);
+  result.columns = columns.contradicted(rivals, result.forms);
   conclude(study, result);
   const Face& face = c.blow.club.head.face;
   if (std::ranges::count(result.adopted, "cg-shift") && std::isinf(face.bulge) && std::isinf(face.roll))

@@ -315,6 +315,25 @@ TEST(CalibrateReduced, TheLawsRestitutionIsThatOfTheWall) {
   }
 }
 
+/// A set names a face that is not the head's own, and not one that the resolved case writes for the head.
+TEST(CalibrateReduced, ASetNamesAFaceThatIsNotTheHeads) {
+  const fs::path dir = fresh_directory("calibrate_reduced_face");
+  const auto set_of = [&](const std::string& face) {
+    summary_of(dir,
+               "kind = \"calibrate-reduced\"\naccuracy = \"look\"\n[delivery]\nclub_speed_mps = 30\n"
+               "dynamic_loft_deg = 20\n[head]\nname = \"iron-7\"\n" +
+                   face +
+                   "[ball]\nmodel = \"range\"\n[[sets]]\nname = \"irons\"\nclub_speeds_mps = [30, 34]\n"
+                   "lofts_deg = [20, 24]\n");
+    return content(dir / "out/reduced.toml");
+  };
+  const std::string unnamed = set_of(""), own = set_of("[face]\nname = \"hollow-iron\"\n"),
+                    other = set_of("[face]\nname = \"forged-iron\"\n");
+  EXPECT_EQ(unnamed, own);
+  EXPECT_EQ(unnamed.find("faces"), std::string::npos) << unnamed;
+  EXPECT_NE(other.find("faces = [\"forged-iron\"]"), std::string::npos) << other;
+}
+
 /// Thrown without air, balls fly 2 v sin(angle) / g. What one site adds is found, and the air carries none of it.
 TEST(LandingTimes, WhatASiteAddsToParabolasIsFound) {
   const fs::path dir = fresh_directory("landing_times");

@@ -1090,12 +1090,45 @@ TEST_F(Loop, AStepOfThePhysicsAccusesNoColumn) {
 
 /// Balls of two inertias differ in launch angle and spin, as a loft that is read wrong for one of them does.
 TEST_F(Loop, BallsOfTwoInertiasAccuseNoColumn) {
-  const LoopResult r = run(case_of(changed(csv({.shots = 160, .core = 0.03}), ",ball",
-                                           [](int row, auto& cells) { cells.push_back(row % 2 ? "b" : "a"); })));
+  for (const bool wedge : {true, false}) {
+    const World w{.shots = 160, .wedge = wedge, .core = wedge ? 0.03 : 0.05};
+    const LoopResult r =
+        run(case_of(changed(csv(w), ",ball", [](int row, auto& cells) { cells.push_back(row % 2 ? "b" : "a"); })));
+    EXPECT_EQ(name(r.verdict), "unexplained") << wedge << sentence(r);
+    EXPECT_TRUE(r.columns.empty()) << wedge << sentence(r);
+    ASSERT_FALSE(r.unexplained.empty());
+    EXPECT_EQ(r.unexplained.front().regressor, "ball") << wedge;
+  }
+}
+
+/// Single rows slip in any column. Where most that are flagged are so for one column, that column is told.
+TEST_F(Loop, SlipsInOneColumnAreNoSingleSlips) {
+  int lost = 0;
+  const std::string text = changed(csv({.shots = 160}), "", [&](int, auto& cells) {
+    std::string& side = cells[kSidespin];
+    if (std::stod(side) > -700 || lost == 6) return;
+    side = side.substr(1);
+    ++lost;
+  });
+  ASSERT_EQ(lost, 6);
+  const LoopResult r = run(case_of(text));
+  EXPECT_EQ(r.flagged.size(), 6U);
   EXPECT_EQ(name(r.verdict), "unexplained") << sentence(r);
-  EXPECT_TRUE(r.columns.empty()) << sentence(r);
   ASSERT_FALSE(r.unexplained.empty());
-  EXPECT_EQ(r.unexplained.front().regressor, "ball");
+  EXPECT_EQ(r.unexplained.front().regressor, "sidespin_rpm");
+}
+
+/// What an effect and a wrong column say is compared on the same rows, the effect at its best size there.
+TEST_F(Loop, ARivalOfAWrongColumnIsFittedToItsRows) {
+  const ShotCase c = case_of(csv({.shots = 60, .level = 0.04}));
+  const LoopResult r = run(c);
+  const auto level = std::ranges::find_if(
+      r.forms, [](const Parametrisation& f) { return f.effect == "restitution-law" && f.parameters.size() == 1; });
+  ASSERT_NE(level, r.forms.end());
+  const Fit elsewhere{.model = {{&*level}}, .p = Eigen::VectorXd::Constant(1, 0.02)};
+  const Columns columns(c);
+  EXPECT_FALSE(columns.contradicted({}, r.forms).empty());
+  EXPECT_TRUE(columns.contradicted({elsewhere}, r.forms).empty());
 }
 
 /// A face that holds the ball less along its grooves makes less of one part of the spin, by a factor.
@@ -1131,13 +1164,15 @@ TEST_F(Loop, AColumnMayBeReadInAnotherSenseOnAPartOfTheSession) {
 
 /// Each of two causes may have two names: that is two ties, not four sets without a name in common.
 TEST_F(Loop, TwoCausesOfTwoNamesEachAreTwoTies) {
-  const LoopResult r = run(case_of(csv({.shots = 200, .level = -0.012, .heel = 0.0015})));
-  ASSERT_EQ(r.selection.level, 2) << sentence(r);
-  EXPECT_EQ(name(r.verdict), "ambiguous") << sentence(r);
-  ASSERT_EQ(r.ties.size(), 2U) << sentence(r);
-  const auto in = [&](std::size_t tie, const char* e) { return std::ranges::count(r.ties[tie], e) == 1; };
-  EXPECT_TRUE(in(0, "restitution-law") && in(0, "head-mass") && !in(0, "cg-shift")) << sentence(r);
-  EXPECT_TRUE(in(1, "cg-shift") && !in(1, "restitution-law") && !in(1, "head-mass")) << sentence(r);
+  for (const unsigned seed : {1U, 3U}) {
+    const LoopResult r = run(case_of(csv({.shots = 200, .level = -0.008, .heel = 0.0008, .seed = seed})));
+    ASSERT_EQ(r.selection.level, 2) << sentence(r);
+    EXPECT_EQ(name(r.verdict), "ambiguous") << sentence(r);
+    std::set<std::set<std::string>> ties;
+    for (const auto& tie : r.ties) ties.insert({tie.begin(), tie.end()});
+    EXPECT_EQ(ties, (std::set<std::set<std::string>>{{"head-mass", "restitution-law"}, {"cg-shift", "head-closure"}}))
+        << seed << sentence(r);
+  }
 }
 
 /// What the contact does follows the angle at which the head meets the ball, which no single column is.
