@@ -264,7 +264,8 @@ std::string difference(const fs::path& a_dir, const fs::path& b_dir) {
         band = fmt::format(
             "  numerical: the larger error of the two runs, each by itself; {} {}: {:.2g} {}, of {}, {}{}\n", model,
             c.name, error, c.unit, of_a >= of_b ? "A" : "B",
-            own ? "by its second, coarser run" : "by the table of docs/command.md or the model's tolerance",
+            own ? "by its second, coarser run"
+                : "by the table of docs/command.md, rounded up, or the model's tolerance",
             same_mesh(model, a, b)
                 ? ". Both runs have the same mesh, and most of that error is common to both. Run both at another "
                   "`accuracy` to see how far B - A moves"

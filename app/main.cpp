@@ -264,7 +264,7 @@ int main(int argc, char** argv) {
     return ends(1, "out of memory: a coarser mesh, fewer harmonics or fewer rows need less");
   } catch (const app::InputError& e) { return ends(2, e.what()); } catch (const solvers::NonConvergence& e) {
     return ends(3, fmt::format("no convergence: {}", e.what()));
-  } catch (const std::invalid_argument& e) {
+  } catch (const app::Doubted& e) { return ends(3, e.what()); } catch (const std::invalid_argument& e) {
     return ends(2, e.what());
   } catch (const std::filesystem::filesystem_error& e) {
     // A name that no disk stores is a mistake of whoever typed it.

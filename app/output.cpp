@@ -261,7 +261,7 @@ void Output::draw(const post::Figure& figure, std::string_view name, bool on_pag
 RunPage& Output::page() { return state_->page; }
 
 void Output::warn(std::string_view doubt) {
-  if (state_->options.strict) throw solvers::NonConvergence(fmt::format("--strict: {}", doubt));
+  if (state_->options.strict) throw Doubted(fmt::format("--strict: {}", doubt));
   state_->doubts.emplace_back(doubt);
   state_->page.doubt(doubt);
   if (!quiet()) std::fputs(("warning: " + one_line(doubt) + '\n').c_str(), stderr);

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 
@@ -44,6 +45,11 @@ class Progress {
   std::unique_ptr<State> state_;
 };
 
+/// The first doubt of a strict run.
+struct Doubted : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
 class Output {
  public:
   /// Creates OUT (refused with InputError where a finished run lies there, unless forced, where another process is at
@@ -76,8 +82,7 @@ class Output {
   void draw(const post::Figure& figure, std::string_view name, bool on_page = true);
   /// OUT/report.html as it grows.
   RunPage& page();
-  /// A doubt about the numbers: for the person, the log and `summary.json`. Throws solvers::NonConvergence where the
-  /// run is strict.
+  /// A doubt about the numbers: for the person, the log and `summary.json`. Throws Doubted where the run is strict.
   void warn(std::string_view doubt);
   /// What the run could not do and its numbers do not suffer from: for the person, even a quiet one's, the page, the
   /// log and `summary.json`.

@@ -61,7 +61,7 @@ Head read_head_values(Table table, bool whole, const std::optional<Head>& named)
   const bool needed = whole && std::isfinite(head.mass);
   const bool given = table.has_quantity("inertia") || table.has_quantity("cg") || named;
   if (!needed && !given) {
-    if (std::isfinite(head.mass)) head.inertia = limits::inf * Mat3::Identity();
+    if (std::isfinite(head.mass)) head.inertia = Vec3::Constant(limits::inf).asDiagonal();
     return head;
   }
   head.cg = table.vector({"cg", "centre of gravity in the face frame (Xc out of the face, Yc to the heel, Zc up)"},

@@ -49,7 +49,7 @@ std::string scatter(const LoopResult& r, std::size_t channel, const Column& colu
 }
 
 /// What the words above it mean.
-std::string gloss(const char* text) { return fmt::format("<p><small>{}</small></p>", text); }
+std::string gloss(std::string_view text) { return fmt::format("<p><small>{}</small></p>", text); }
 
 std::string number(double x) { return std::isfinite(x) ? fmt::format("{:.4g}", x) : "–"; }
 
@@ -151,7 +151,8 @@ std::string between_groups(const LoopResult& r) {
   return s + "</table></div>" +
          gloss(
              "What the corrected model leaves, put down to one quantity at a time, whose value differs from group to "
-             "group: heads, balls and players that the data do not tell apart otherwise. Several rows may show one "
+             "group of five shots or more: heads, balls and players that the data do not tell apart otherwise. Several "
+             "rows may show one "
              "cause: a restitution that differs moves the reading of ball speed too. p: chance of as large a "
              "difference "
              "between groups that are alike.");
@@ -193,6 +194,9 @@ std::string page(const LoopResult& r, const Shots& table) {
         "style='background:var(--blue)'></i>after{}</small></p>"
         "<figure class='wide'>{}</figure>",
         smooth ? "<i style='background:var(--green)'></i>after, remainder taken away" : "", bars(r.channels, smooth));
+  if (const std::vector<std::string> tied = tied_in_after(r); !tied.empty())
+    s += gloss(fmt::format("After: with {}{}, which {} tied.", r.adopted.empty() ? "" : "what was adopted and ",
+                           fmt::join(tied, " and "), tied.size() > 1 ? "are" : "is"));
   s += "<div class='scroll'><table><tr><th>channel<th>noise<th>scatter / noise";
   s += "<th>held out: RMS by noise<th>RMS before<th>RMS after";
   s += smooth ? "<th>RMS after, remainder taken away" : "";

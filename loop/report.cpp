@@ -276,11 +276,18 @@ std::vector<AdoptedSize> adopted_sizes(const LoopResult& r) {
   for (const Parametrisation* form : r.selection.chosen.model.forms)
     for (const Parameter& p : form->parameters) {
       if (std::ranges::count(r.adopted, form->effect))
-        out.push_back(
-            {form->effect, p.name, p.unit, r.selection.chosen.p[k] / p.si, std::sqrt(r.covariance(k, k)) / p.si});
+        out.push_back({form->effect, p.name, p.unit, r.selection.chosen.p[k] / p.si,
+                       std::sqrt(r.covariance(k, k)) / p.si, p.at_edge(r.selection.chosen.p[k])});
       ++k;
     }
   return out;
+}
+
+std::vector<std::string> tied_in_after(const LoopResult& r) {
+  if (r.ties.empty()) return {};
+  std::vector<std::string> names = r.selection.chosen.model.effects(r.selection.base.model.forms.size());
+  std::erase_if(names, [&](const std::string& e) { return std::ranges::count(r.adopted, e) > 0; });
+  return names;
 }
 
 std::string sentence(const LoopResult& r) {

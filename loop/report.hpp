@@ -17,9 +17,12 @@ std::string residuals_csv(const LoopResult& result, const Shots& table);
 struct AdoptedSize {
   std::string effect, parameter, unit;  ///< unit "1": a plain number
   double value = 0, sd = 0;             ///< sd: infinite where the data do not show it
+  bool at_bound = false;                ///< at the edge of its plausible range
 };
 /// By the fit to all training rows; empty where nothing is adopted.
 std::vector<AdoptedSize> adopted_sizes(const LoopResult& result);
+/// Of what is tied, the effects that the model behind `after` has beside the adopted ones.
+std::vector<std::string> tied_in_after(const LoopResult& result);
 /// The verdict in a sentence.
 std::string sentence(const LoopResult& result);
 /// The body of a page with the figures inline.

@@ -305,11 +305,11 @@ void import_shots(const ImportOptions& o) {
   const std::string title =
       (several ? fs::absolute(o.out / "").parent_path().filename() : o.files.front().stem()).string();
   std::string toml = fmt::format(
-      "# Made by `hosel import` from {}. shots.csv holds what the loop uses, kept.csv the rest.\n"
+      "# Made by `hosel import` from {}. shots.csv holds what the loop uses{}.\n"
       "kind  = \"loop\"\ntitle = {}\n\n[model]\nbase = \"{}\"\n\n"
       "[ball]\nmass_kg        = 0.04593\nradius_mm      = 21.335\ninertia_factor = 0.4\n",
-      toml_text(printable(names)), toml_text(printable(title + (o.club.empty() ? "" : ", " + o.club))),
-      turns ? "rigid-eccentric" : "rigid-planar");
+      toml_text(printable(names)), rest.empty() ? "" : ", kept.csv the rest",
+      toml_text(printable(title + (o.club.empty() ? "" : ", " + o.club))), turns ? "rigid-eccentric" : "rigid-planar");
   if (turns) {
     const NominalHead& head = d.heads().at(*heads.begin());
     toml += fmt::format(

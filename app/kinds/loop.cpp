@@ -64,7 +64,7 @@ class LoopJob final : public Job {
     } else if (case_.head_turns) {
       root.fail("", "a table [head] with mass, cg_mm and inertia_kg_m2 is needed for this base");
     } else {
-      head.inertia = std::numeric_limits<double>::infinity() * Mat3::Identity();
+      head.inertia = Vec3::Constant(std::numeric_limits<double>::infinity()).asDiagonal();
     }
     head.compliance = declared.club.head.compliance;
     case_.inertia_declared = head.inertia.allFinite();
@@ -158,7 +158,7 @@ class LoopJob final : public Job {
                                     {0.01, inf}, named ? named->face.roll : inf);
     if (!turns && !named && !table.has_quantity("inertia")) {
       head.cg = table.vector({"cg", "centre of gravity in the face frame"}, "mm", Vec3::Zero());
-      head.inertia = inf * Mat3::Identity();
+      head.inertia = Vec3::Constant(inf).asDiagonal();
       return head;
     }
     head.cg = table.vector({"cg", "centre of gravity in the face frame"}, "mm", standard_of(named, &Head::cg));

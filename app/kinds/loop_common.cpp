@@ -1,6 +1,7 @@
 #include "app/kinds/loop_common.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <memory>
@@ -81,11 +82,15 @@ void report_loop(Output& out, const loop::LoopResult& result, const loop::Shots&
   for (const loop::AdoptedSize& s : loop::adopted_sizes(result)) {
     const std::string unit = s.unit == "1" ? "" : " " + post::symbol(s.unit);
     const post::Digits digits = post::digits(s.value, s.sd);
+    const std::string bound = s.at_bound ? " (at its bound)" : "";
     out.page().answer(fmt::format("{}: {}", s.effect, post::spoken(s.parameter)), digits.value + unit,
-                      "± " + digits.deviation);
-    out.say(
-        fmt::format("  {}: {} {} ± {}{}", s.effect, post::spoken(s.parameter), digits.value, digits.deviation, unit));
+                      "± " + digits.deviation + bound);
+    out.say(fmt::format("  {}: {} {} ± {}{}{}", s.effect, post::spoken(s.parameter), digits.value, digits.deviation,
+                        unit, bound));
   }
+  if (const std::vector<std::string> tied = loop::tied_in_after(result); !tied.empty())
+    out.say(fmt::format("  after: with {}{}, which {} tied", result.adopted.empty() ? "" : "what was adopted and ",
+                        fmt::join(tied, " and "), tied.size() > 1 ? "are" : "is"));
   const bool remainder = result.remainder && !result.remainder->places.empty();
   for (const auto& c : result.channels) {
     constexpr double seen = 1.01;  // less is no other number to a reader

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <span>
+#include <utility>
 
 #include "loop/shots/inputs.hpp"
 
@@ -43,20 +44,27 @@ Touched touched(const Shot& before, const Shot& after) {
 
 /// The adopted effects, found on shots.
 struct Finding {
-  Touched of;                      ///< by any of them, alike in all shots
-  std::vector<std::string> other;  ///< effects that do something else as well
-  Shot first;                      ///< with them in it
+  Touched of;                       ///< by any of them, alike in all shots
+  std::vector<std::string> other;   ///< effects that do something else as well, or that are only tied
+  std::vector<Eigen::Index> entry;  ///< the parameters of the effects that it holds
+  Shot first;                       ///< with these in it
 };
 
-/// `layers`: the base has a ball of layers, so that what changes the ball can be said.
-Finding with_effects(const loop::Fit& fit, const std::vector<Shot>& shots, bool layers) {
+/// Of a fit, the effects among `adopted`. `layers`: the base has a ball of layers, so that what changes the ball can be
+/// said.
+Finding with_effects(const loop::Fit& fit, const std::vector<std::string>& adopted, const std::vector<Shot>& shots,
+                     bool layers) {
   Finding f;
   std::vector<Shot> changed = shots;
-  int at = 0;
+  Eigen::Index at = 0;
   for (const loop::Parametrisation* form : fit.model.forms) {
     const auto n = form->parameters.size();
     const std::span<const double> p(fit.p.data() + at, n);
-    at += int(n);
+    const Eigen::Index first = std::exchange(at, at + Eigen::Index(n));
+    if (!std::ranges::count(adopted, form->effect)) {
+      f.other.push_back(form->effect);
+      continue;
+    }
     bool other = form->after || form->reading || form->flight || !form->before;
     if (form->before) {
       std::vector<Shot> next = changed;
@@ -78,6 +86,7 @@ Finding with_effects(const loop::Fit& fit, const std::vector<Shot>& shots, bool 
         f.of = {f.of.contact || t.contact, f.of.head || t.head, f.of.ball || t.ball, f.of.layers || t.layers,
                 f.of.face || t.face};
         changed = std::move(next);
+        for (Eigen::Index k = first; k < at; ++k) f.entry.push_back(k);
       } else {
         other = true;
       }
@@ -110,12 +119,15 @@ Offer told_of(const loop::ShotCase& c, const loop::LoopResult& r, const std::vec
       .what = fmt::format("{}: {} with {}", r.title.empty() ? "a loop" : r.title, r.base, fmt::join(r.adopted, ", ")),
       .source = fmt::format("{} measured shots", r.used)};
   const loop::Fit& fit = r.selection.chosen;
-  o.covariance = r.covariance;
+  o.covariance = r.covariance(found.entry, found.entry);
+  Eigen::Index at = 0;
   for (const loop::Parametrisation* form : fit.model.forms)
     for (const loop::Parameter& p : form->parameters) {
+      const Eigen::Index of_fit = at++;
+      if (!std::ranges::count(found.entry, of_fit)) continue;
       const auto k = Eigen::Index(o.values.size());
       o.parameters.push_back(fmt::format("{}: {} [{}]", form->effect, p.name, p.unit));
-      o.values.push_back(fit.p[k] / p.si);
+      o.values.push_back(fit.p[of_fit] / p.si);
       o.covariance.row(k) /= p.si;
       o.covariance.col(k) /= p.si;
     }
@@ -154,7 +166,9 @@ void offer_corrected(Output& out, const loop::ShotCase& c, const loop::LoopResul
   const loop::Inputs inputs = loop::make_inputs(c.shots, c.blow, c.head_mass_declared, {}, c.loft_unknown);
   const std::vector<Shot>& shots = inputs.trials;
   if (shots.empty()) return;
-  const Finding found = with_effects(result.selection.chosen, shots, base != nullptr);
+  std::vector<std::string> adopted = result.adopted;
+  adopted.insert(adopted.end(), c.effects.begin(), c.effects.end());  // the case declares these
+  const Finding found = with_effects(result.selection.chosen, adopted, shots, base != nullptr);
   Offer o = told_of(c, result, shots, inputs.row_of, found);
   const Blow& blow = found.first.blow;
   if (found.of.contact) {

@@ -273,12 +273,12 @@ NextExperiment design(const ShotCase& c, const Problem& problem, const ShotModel
         if (!std::ranges::count(sensors, s)) sensors.push_back(s);
       if (after > before + 1 && partial.empty()) partial = more;
       sentences.push_back(
-          fmt::format("shots within this range do not separate {} from {}: they differ by {:.1f} noise units now, by "
+          fmt::format("Shots within this range do not separate {} from {}: they differ by {:.1f} noise units now, by "
                       "{:.1f} after {} more shots, and 4.8 are needed. Measure {}",
                       r.one, r.two, before, after, more.size(), fmt::join(of_pair, "; or ")));
     } else {
       chosen.insert(chosen.end(), more.begin(), more.end());
-      sentences.push_back(chosen.empty() ? fmt::format("more shots of the same kind separate {} from {}", r.one, r.two)
+      sentences.push_back(chosen.empty() ? fmt::format("More shots of the same kind separate {} from {}", r.one, r.two)
                                          : fmt::format("{} shots at these inputs separate {} from {}: they differ by "
                                                        "{:.1f} noise units now, by {:.1f} then, and 4.8 are needed",
                                                        chosen.size(), r.one, r.two, before, after));

@@ -99,6 +99,12 @@ TEST_F(Adopt, ALoopsContactIsAnotherKindsModel) {
   const NamedContact contact = library_contact("irons");
   ASSERT_TRUE(contact.law);
   EXPECT_GT(contact.law->tangential_restitution, 0.2);
+  // What is only tied is in the model behind the errors after, and in no entry.
+  EXPECT_NE(content(out / "report.html").find("After: with what was adopted and"), std::string::npos);
+  EXPECT_EQ(contact.law->restitution, ContactLaw{}.restitution);
+  EXPECT_EQ(contact.law->restitution_slope, ContactLaw{}.restitution_slope);
+  EXPECT_NE(content(dir / "library" / "contacts" / "irons.toml").find("a claim that needs "), std::string::npos);
+  EXPECT_EQ(content(out / "log.txt").find("the head is not offered"), std::string::npos);
   ASSERT_TRUE(contact.seen.spin_loft);
   EXPECT_FALSE(contact.seen.clubs.empty());
   write(dir / "blow" / "case.toml",

@@ -217,7 +217,10 @@ TEST(CommandLine, AStrikeOffTheFaceWarns) {
   EXPECT_EQ(on.text.find("off the face"), std::string::npos) << on.text;
   EXPECT_EQ(off.status, 0);
   EXPECT_NE(off.text.find("struck off the face: 70 mm towards the toe"), std::string::npos) << off.text;
-  EXPECT_EQ(run("--strict --set delivery.impact_toe_mm=70").status, 3);
+  const Outcome strict = run("--strict --set delivery.impact_toe_mm=70");
+  EXPECT_EQ(strict.status, 3);
+  EXPECT_NE(strict.text.find("--strict: struck off the face"), std::string::npos) << strict.text;
+  EXPECT_EQ(strict.text.find("no convergence"), std::string::npos) << strict.text;
 }
 
 TEST(CommandLine, ACharacteristicTimePassesOrFails) {
