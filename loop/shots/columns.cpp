@@ -314,7 +314,8 @@ Eigen::MatrixXd Columns::corrected(const Slip& s) const {
     return values;
   }
   if (s.rows != 0) {
-    for (Eigen::Index i = 0; i < values.rows(); ++i) values(i, s.column) = neighbour(i, s.column, s.rows);
+    for (Eigen::Index i = 0; i < values.rows(); ++i)
+      if (s.member.empty() || s.member[std::size_t(i)]) values(i, s.column) = neighbour(i, s.column, s.rows);
     return values;
   }
   for (const int k : {s.column, s.second}) {
@@ -390,7 +391,7 @@ void Columns::try_parts(const std::vector<PartOfRows>& parts) {
   const Eigen::VectorXd recorded = losses(residuals(values_, {}, {}), W);
   std::vector<Slip> on_parts;
   for (const Slip& whole : slips_) {
-    if ((whole.finding != "unit" && whole.finding != "sign") || whole.second >= 0) continue;
+    if (whole.finding == "swapped" || whole.second >= 0) continue;
     const bool output = whole.column >= int(inputs_.size());
     // Where its noise was estimated, that of the written numbers goes with them. Their density, as for all rows.
     const Eigen::MatrixXd V = whitening(values_, noise_of(whole));
@@ -635,7 +636,8 @@ std::string Columns::text(const Slip& s, bool second) const {
     return fmt::format("{} reads like {}{}: ratio {:.4g} to what the other columns allow", c.name, s.what, where,
                        s.factor < 1 ? 1 / s.factor : s.factor);
   if (s.finding == "sign") return fmt::format("{} reads with the other sign{}", c.name, where);
-  if (s.finding == "rows") return fmt::format("{} is that of the row {}", c.name, s.rows > 0 ? "before" : "after");
+  if (s.finding == "rows")
+    return fmt::format("{} is that of the row {}{}", c.name, s.rows > 0 ? "before" : "after", where);
   if (s.finding == "swapped")
     return fmt::format("{} reads like {}: the two columns are swapped", c.name,
                        columns_[std::size_t(second ? s.column : s.second)]->name);

@@ -219,7 +219,7 @@ TEST(CommandLine, AStrikeOffTheFaceWarns) {
   EXPECT_NE(off.text.find("struck off the face: 70 mm towards the toe"), std::string::npos) << off.text;
   const Outcome strict = run("--strict --set delivery.impact_toe_mm=70");
   EXPECT_EQ(strict.status, 3);
-  EXPECT_NE(strict.text.find("--strict: struck off the face"), std::string::npos) << strict.text;
+  EXPECT_NE(strict.text.find("--strict: the ball is struck off the face"), std::string::npos) << strict.text;
   EXPECT_EQ(strict.text.find("no convergence"), std::string::npos) << strict.text;
 }
 

@@ -1101,6 +1101,19 @@ TEST_F(Loop, BallsOfTwoInertiasAccuseNoColumn) {
   }
 }
 
+/// A camera that drops a picture shows the place of the shot before from then on.
+TEST_F(Loop, AColumnMayBeThatOfTheRowBeforeFromAShotOn) {
+  std::string before;
+  const LoopResult r = run(case_of(changed(csv({.shots = 120}), "", [&](int row, auto& cells) {
+    const std::string own = cells[kToeOffset];
+    if (row >= 50) cells[kToeOffset] = before;
+    before = own;
+  })));
+  ASSERT_EQ(r.columns.size(), 1U) << sentence(r);
+  EXPECT_EQ(r.columns.front().finding, "rows");
+  EXPECT_EQ(r.columns.front().text.substr(0, 45), "impact_toe_mm is that of the row before from ");
+}
+
 /// Single rows slip in any column. Where most that are flagged are so for one column, that column is told.
 TEST_F(Loop, SlipsInOneColumnAreNoSingleSlips) {
   int lost = 0;
