@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "golf/units.hpp"
+#include "post/digits.hpp"
 
 namespace hosel::post {
 namespace {
@@ -93,23 +94,20 @@ TextTable launch_table(const std::vector<LaunchColumn>& columns, const Measured&
           c.coarser ? std::abs(difference(channel, shown, ((*c.coarser).*channel.value)() / channel.si)) : 0;
       // Without spin its axis has no direction.
       if (channel.name == "spin_axis" && rpm(c.launch.spin_rate()) < 0.5) shown = 0;
-      if (std::abs(shown) < 0.5 * std::pow(10.0, -channel.decimals)) shown = 0;  // no "-0"
-      row.push_back(fmt::format("{:.{}f}", shown, channel.decimals));
-      if (c.coarser) row.back() += fmt::format(" +-{:.{}f}", error, channel.decimals);
+      row.push_back(fixed(shown, channel.decimals));
+      if (c.coarser) row.back() += " +-" + error_bound(error, channel.decimals);
     }
     if (!beside) continue;
     const MeasuredValue* const m = find(measured, measured_as);
-    row.push_back(m ? fmt::format("{:.{}f}", m->value / channel.si, channel.decimals) : "-");
+    row.push_back(m ? fixed(m->value / channel.si, channel.decimals) : "-");
     if (m && m->uncertainty > 0) row.back() += fmt::format(" +-{:.{}f}", m->uncertainty / channel.si, channel.decimals);
-    if (judged)
-      row.push_back(m && m->uncertainty > 0 ? fmt::format("{:+.1f}", off_by(columns.back().launch, *m)) : "-");
+    if (judged) row.push_back(m && m->uncertainty > 0 ? fixed(off_by(columns.back().launch, *m), 1, true) : "-");
   }
   const auto add = [&](const char* name, std::optional<double> Oblique::*value, const Range& range) {
     if (!range && std::ranges::none_of(columns, [&](const LaunchColumn& c) { return (c.oblique.*value).has_value(); }))
       return;
     auto& row = table.rows.emplace_back(1, name);
-    for (const LaunchColumn& c : columns)
-      row.push_back(c.oblique.*value ? fmt::format("{:.3f}", *(c.oblique.*value)) : "-");
+    for (const LaunchColumn& c : columns) row.push_back(c.oblique.*value ? fixed(*(c.oblique.*value), 3) : "-");
     if (beside) row.push_back(range ? fmt::format("{:g} to {:g}", range->first, range->second) : "-");
     if (judged) row.emplace_back();
   };
@@ -122,7 +120,7 @@ TextTable launch_table(const std::vector<LaunchColumn>& columns, const Measured&
     auto& row = table.rows.emplace_back(1, fmt::format("{} [{}]", channel.name, channel.unit));
     for (const LaunchColumn& c : columns) {
       const auto x = c.flight ? channel.value(*c.flight) : std::nullopt;
-      row.push_back(x ? fmt::format("{:.{}f}", *x / channel.si, channel.decimals) : "-");
+      row.push_back(x ? fixed(*x / channel.si, channel.decimals) : "-");
     }
   }
   return table;

@@ -135,7 +135,7 @@ nlohmann::json compare(Output& out, const StudyTable& table, const StudyReferenc
     if (shown.rows.size() < 2) continue;
     const std::string& model = table.models[m];
     const std::string what = reference.variant ? (model.empty() ? "" : model + ": ") + "each variant"
-                             : model.empty()   ? "difference"
+                             : model.empty()   ? "computed"
                                                : model;
     const std::string title = fmt::format("{} minus {}{}{}", what, reference.name, group.empty() ? "" : ", ", group);
     out.tell(title);

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/study/compare.hpp"
+#include "post/digits.hpp"
 #include "post/labels.hpp"
 
 namespace hosel::app {
@@ -74,6 +75,16 @@ class PartsReport {
     return out;
   }
 
+  /// The largest value of an output in the two variants of a part.
+  double size_of(const StudyParts::Part& part, std::size_t model, std::size_t output) const {
+    const std::vector<double>& y = table_.at(model, output).y;
+    double most = 0;
+    for (std::size_t p = 0; p < block_; ++p)
+      for (const std::size_t variant : {part.of, part.minus})
+        if (const double x = std::abs(y[variant * block_ + p]); x > most) most = x;  // not NaN
+    return most;
+  }
+
   /// Of the 95 % interval by independent deviations from the value `parts_from`; NaN where one of them is not known.
   double half_width(const StudySeries& of) const {
     double square = 0;
@@ -86,7 +97,9 @@ class PartsReport {
   /// The mean over the places, and each of them where they are few.
   void tell(const StudyParts::Part& part, std::size_t model, json& said) const {
     constexpr std::size_t few = 9;
-    post::TextTable shown{.rows = {{"output", "mean"}}, .margin = 1, .least_width = 10, .even = false};
+    // A row is a change at a place, or the mean of several; over `over` each row is a mean.
+    post::TextTable shown{
+        .rows = {{"output", parts_.over ? "mean" : "change"}}, .margin = 1, .least_width = 10, .even = false};
     if (parts_.over) shown.rows[0].insert(shown.rows[0].end(), {"lowest", "highest"});
     if (parts_.from) shown.rows[0].push_back(table_.design.levels(*parts_.over)[*parts_.from] + ", 95 %");
     if (places_.size() > 1) shown.rows[0].push_back("where");
@@ -95,18 +108,20 @@ class PartsReport {
       if (!std::isfinite(s.mean)) return;
       json& j = at[table_.outputs[o]];
       j = s.mean;
-      auto& row = shown.rows.emplace_back(std::vector{post::label(table_.outputs[o]), fmt::format("{:+.4g}", s.mean)});
+      // What both variants have in common is the scale of their difference's round-off.
+      const double scale = size_of(part, model, o) / part.per;
+      const auto number = [&](double x) { return post::beside(x, scale, true); };
+      auto& row = shown.rows.emplace_back(std::vector{post::label(table_.outputs[o]), number(s.mean)});
       if (parts_.over) {
         j = {{"mean", s.mean}, {"low", s.low}, {"high", s.high}};
         for (std::size_t k = 0; k < of.y.size(); ++k)
           if (std::isfinite(of.y[k])) j["each"][table_.design.cells(places_.front().points[k])[*parts_.over]] = of.y[k];
-        row.insert(row.end(), {fmt::format("{:+.4g}", s.low), fmt::format("{:+.4g}", s.high)});
+        row.insert(row.end(), {number(s.low), number(s.high)});
         if (parts_.from && std::isfinite(of.y[*parts_.from])) {
           const double own = of.y[*parts_.from], half = half_width(of);
           j["from"] = own;
           if (std::isfinite(half)) j["half_width_95"] = half;
-          row.push_back(std::isfinite(half) ? fmt::format("{:+.4g} ± {:.2g}", own, half)
-                                            : fmt::format("{:+.4g}, a row has no answer", own));
+          row.push_back(number(own) + (std::isfinite(half) ? fmt::format(" ± {:.2g}", half) : ", a row has no answer"));
         }
       }
       if (places_.size() > 1) row.push_back(where);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "post/digits.hpp"
 #include "post/labels.hpp"
 #include "post/launch_table.hpp"
 
@@ -135,6 +136,11 @@ post::TextTable StudyTable::rows() const {
     for (std::size_t d = 0; d < design.size(); ++d) measured_too[o] = measured_too[o] || seen(d, o);
     if (measured_too[o]) table.rows[0].insert(table.rows[0].end(), {"measured", "off [%]"});
   }
+  std::vector<double> scale;  // of each series: its round-off is no digit
+  for (const StudySeries& s : series) {
+    const auto [low, mean, high] = s.spread();
+    scale.push_back(std::isfinite(mean) ? std::max(std::abs(low), std::abs(high)) : 0);
+  }
   for (std::size_t d = 0; d < design.size(); ++d)
     for (std::size_t m = 0; m < models.size(); ++m) {
       auto& row = table.rows.emplace_back(std::vector{design.said(d)});
@@ -142,7 +148,7 @@ post::TextTable StudyTable::rows() const {
       if (models.size() > 1) row.push_back(models[m]);
       for (std::size_t o = 0; o < outputs.size(); ++o) {
         const double y = at(m, o).y[d];
-        row.push_back(std::isfinite(y) ? fmt::format("{:.5g}", y) : "-");
+        row.push_back(std::isfinite(y) ? post::beside(y, scale[m * outputs.size() + o], false, 5) : "-");
         if (!measured_too[o]) continue;
         const auto range = seen(d, o);
         const bool one = range && range->low == range->high;

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <regex>
 
@@ -223,6 +224,7 @@ spin_rate_rpm = 2500
   const CsvFile parts(dir / "out" / "parts.csv"), differences(dir / "out" / "differences.csv");
   EXPECT_NEAR(parts.number("spin_axis_deg", 0), 2, 1e-9);
   EXPECT_NEAR(parts.number("spin_axis_rad", 0), 0.0349066, 1e-7);
+  EXPECT_NE(o.text.find("change\n"), std::string::npos) << "at one place there is no mean: " << o.text;
   // What is the same in both is said once, not shown as zeros.
   EXPECT_EQ(parts.number("ball_speed_mps", 0), 0);
   EXPECT_NE(o.text.find("p: no difference in ball speed\n"), std::string::npos) << o.text;
@@ -231,6 +233,40 @@ spin_rate_rpm = 2500
     if (differences.text("output", i) == "spin_axis_rad" && differences.number("largest", i) != 0) {
       EXPECT_NEAR(differences.number("largest", i), 0.0349066, 1e-7);
     }
+}
+
+/// One speed in two units: what the variants differ by is round-off, in the tables.
+TEST(StudyAnswers, RoundOffIsShownAsZero) {
+  const fs::path dir = fresh_directory("study_zero");
+  const Outcome o = run(dir, R"(kind = "study"
+models = ["rigid-eccentric"]
+outputs = ["ball_speed_mps", "sidespin_rpm"]
+figures = false
+[[variant]]
+name = "a"
+[[variant]]
+name = "b"
+set = ["delivery.club_speed_mph=100.66213314244811"]
+[[part]]
+name = "p"
+of = "b"
+minus = "a"
+[[axis]]
+key = "delivery.impact_toe_mm"
+values = [-10, -7, -3, 3, 7, 10]
+[delivery]
+club_speed_mps = 45
+dynamic_loft_deg = 12
+[head]
+name = "driver-460"
+)");
+  ASSERT_EQ(o.status, 0) << o.text;
+  const CsvFile parts(dir / "out" / "parts.csv");
+  double most = 0;
+  for (std::size_t i = 0; i < parts.rows(); ++i) most = std::max(most, std::abs(parts.number("sidespin_rpm", i)));
+  ASSERT_GT(most, 0) << "there is round-off";
+  ASSERT_LT(most, 1e-9);
+  EXPECT_FALSE(std::regex_search(o.text, std::regex("[0-9]e-1[0-9]|[ -]-0[ \n]"))) << o.text;
 }
 
 /// A curve that turns is told by its turning point too, a straight one by its ends.

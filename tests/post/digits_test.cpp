@@ -32,5 +32,24 @@ TEST(Digits, RoundOffIsZero) {
   EXPECT_EQ(beside(0.25, 60, true), "+0.25");
 }
 
+TEST(Digits, WhatPrintsAsZeroHasNoSign) {
+  EXPECT_EQ(fixed(-0.0004, 3), "0.000");
+  EXPECT_EQ(fixed(-0.5, 0), "0") << "a tie goes to the even digit";
+  EXPECT_EQ(fixed(-0.0006, 3), "-0.001");
+  EXPECT_EQ(fixed(0.04, 1, true), "0.0");
+  EXPECT_EQ(fixed(0.06, 1, true), "+0.1");
+  EXPECT_EQ(fixed(-71.255, 1), "-71.3");
+  EXPECT_EQ(beside(-2.8172e-13, 4, false, 5), "0") << "a side [m]";
+  EXPECT_EQ(beside(1.23456, 4, false, 5), "1.2346");
+}
+
+TEST(Digits, AnErrorIsRoundedUpAndNeverZero) {
+  EXPECT_EQ(error_bound(0.0241, 2), "0.03");
+  EXPECT_EQ(error_bound(13.2, 0), "14");
+  EXPECT_EQ(error_bound(0, 0), "1");
+  EXPECT_EQ(error_bound(1e-7, 2), "0.01");
+  EXPECT_EQ(error_bound(0.02 * (1 + 1e-14), 2), "0.02") << "round-off is no error";
+}
+
 }  // namespace
 }  // namespace hosel::post

@@ -48,4 +48,20 @@ TEST(Channels, TheErrorOfAnAngleIsTheShorterWayRound) {
   EXPECT_EQ(row->back(), "179.50 +-1.00");
 }
 
+/// As the cards above the table have it: rounded up, never zero; and no zero has a sign.
+TEST(LaunchTable, StatesUpperBoundsAndZerosWithoutASign) {
+  const hosel::Launch fine{.velocity = hosel::Vec3(60, 0, 5), .spin = hosel::Vec3(0, -200, 0)};
+  hosel::Launch coarse = fine;
+  coarse.velocity.x() += 0.0213;
+  const auto table = hosel::post::launch_table(
+      {{.title = "m", .launch = fine, .oblique = {.tangential_restitution = -2e-4}, .coarser = coarse}});
+  const auto said = [&](const char* name) {
+    const auto row = std::ranges::find(table.rows, name, [](const auto& r) { return r.front(); });
+    return row == table.rows.end() ? std::string("-") : row->back();
+  };
+  EXPECT_EQ(said("ball_speed [m/s]"), "60.21 +-0.03");
+  EXPECT_EQ(said("riflespin [rpm]").substr(1), " +-1");
+  EXPECT_EQ(said("e_t [-]"), "0.000");
+}
+
 }  // namespace
