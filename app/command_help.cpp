@@ -55,6 +55,14 @@ std::string shell_word(std::string_view word) {
   return quoted + '\'';
 }
 
+std::string beside_out(const std::filesystem::path& out, std::string_view word) {
+  std::filesystem::path own = out.lexically_normal();
+  if (!own.has_filename()) own = own.parent_path();  // a name with a slash behind it
+  // The working directory and those above it have their names in the absolute path alone.
+  if (own.empty() || own == "." || own.filename() == "..") own = std::filesystem::weakly_canonical(out);
+  return shell_word(fmt::format("{}-{}", own.string(), word));
+}
+
 std::string typed(int argc, char** argv) {
   std::string line = "hosel";
   for (int i = 1; i < argc; ++i) line += ' ' + shell_word(argv[i]);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <CLI/App.hpp>
+#include <filesystem>
 #include <string>
 #include <string_view>
 
@@ -9,6 +10,8 @@ namespace hosel::app {
 
 /// A word that a shell takes as it is: in quotes where it holds anything but letters, digits and a few signs.
 std::string shell_word(std::string_view word);
+/// A name for another run, as a shell's word: OUT's own and a word behind it, so that it is never OUT itself.
+std::string beside_out(const std::filesystem::path& out, std::string_view word);
 /// The line that was typed, so that a shell takes it as the same words.
 std::string typed(int argc, char** argv);
 /// The man page hosel(1), as roff.

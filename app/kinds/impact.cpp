@@ -141,7 +141,7 @@ class ImpactJob final : public Job {
       out.say(fmt::format("dynamic loft that gives the measured launch angle [deg]: {}", lofts));
     }
     for (const std::string& sentence : post::outside(columns.back(), measured_, ranges_)) out.say(sentence);
-    if (const std::string sentence = shaft_sentence(story); !sentence.empty()) out.say(sentence);
+    if (const std::string sentence = shaft_sentence(story, out.units()); !sentence.empty()) out.say(sentence);
     show_impact(out, story);
     out.write_summary(summary);
     for (const Entry& entry : own_.models)  // only now: a disk too full for the summary must not cost the run

@@ -10,6 +10,8 @@
 #include "golf/first_contact.hpp"
 #include "golf/units.hpp"
 #include "models/reduced/face_strike.hpp"
+#include "post/digits.hpp"
+#include "post/energy_table.hpp"
 #include "post/html.hpp"
 #include "post/impact_figures.hpp"
 
@@ -21,11 +23,7 @@ const post::LaunchColumn* find(const ImpactStory& s, std::string_view title) {
   return it == s.columns.end() ? nullptr : &*it;
 }
 
-/// "± 0.02": a bound, so that its last digit is rounded up, and none is zero.
-std::string bound(double error, int decimals) {
-  const double digit = std::pow(10, -decimals);
-  return fmt::format("± {:.{}f}", std::max(std::ceil(error / digit), 1.0) * digit, decimals);
-}
+std::string bound(double error, int decimals) { return "± " + post::error_bound(error, decimals); }
 
 /// Which side of the target a signed quantity says; what prints as zero says none.
 const char* side(double x, double rounding) {
@@ -78,7 +76,7 @@ void answer(Output& out, const ImpactStory& s) {
     page.answer("smash factor", fmt::format("{:.3f}", v / club),
                 mph ? fmt::format("club {:.1f} mph", club / kMpsPerMph) : fmt::format("club {:.2f} m/s", club));
   if (!wall)
-    page.answer("launch angle", fmt::format("{:.2f}°", degrees(l.launch_angle())),
+    page.answer("launch angle", post::fixed(degrees(l.launch_angle()), 2) + "°",
                 note("launch_angle", kRadPerDeg, 2, "°"));
   const auto beside = [](const char* word, const std::string& rest) {
     return rest.empty() ? word : word + ("; " + rest);
@@ -95,7 +93,7 @@ void answer(Output& out, const ImpactStory& s) {
   page.answer("spin", fmt::format("{:.0f} rpm", rpm(l.spin_rate())), note("spin_rate", kRadPerSecPerRpm, 0, " rpm"));
   const double axis = degrees(l.spin_axis());
   if (!wall && rpm(l.spin_rate()) > 0.5)
-    page.answer("spin axis", fmt::format("{:.1f}°", axis),
+    page.answer("spin axis", post::fixed(axis, 1) + "°",
                 beside(axis < -0.05  ? "a draw"
                        : axis > 0.05 ? "a fade"
                                      : "level",
@@ -129,22 +127,9 @@ post::TextTable solution(const std::vector<FeRun>& runs) {
 }
 
 post::TextTable ledger(const std::vector<FeRun>& runs) {
-  post::TextTable t{.rows = {{"energy [J]"}}};
-  for (const FeRun& r : runs) t.rows[0].push_back(r.model);
-  const auto row = [&](const char* name, double solvers::Ledger::*value) {
-    auto& cells = t.rows.emplace_back(1, name);
-    for (const FeRun& r : runs) cells.push_back(fmt::format("{:.4f}", r.result.ledger.*value));
-  };
-  row("before", &solvers::Ledger::initial);
-  row("of motion, after", &solvers::Ledger::kinetic);
-  auto& strain = t.rows.emplace_back(1, "of strain, after");
-  for (const FeRun& r : runs) strain.push_back(fmt::format("{:.4f}", r.result.ledger.strain_total()));
-  row("turned into heat: ball, face, shaft, grip", &solvers::Ledger::viscous);
-  row("lost in friction", &solvers::Ledger::friction);
-  row("in the contact's penalty", &solvers::Ledger::contact);
-  row("lost by the time scheme", &solvers::Ledger::numerical);
-  row("unaccounted for", &solvers::Ledger::closure);
-  return t;
+  std::vector<std::pair<std::string, solvers::Ledger>> all;
+  for (const FeRun& r : runs) all.emplace_back(r.model, r.result.ledger);
+  return post::energy_table(all, post::EnergyOf::blow);
 }
 
 void suggest(Output& out, const ImpactStory& s) {
@@ -153,28 +138,31 @@ void suggest(Output& out, const ImpactStory& s) {
                     again = "hosel run " + shell_word((out.directory() / "case.resolved.toml").string());
   const bool fe = !s.runs.empty();
   if (fe && out.resolved_case().find("accuracy = \"look\"") != std::string::npos)
-    page.suggest("A finer answer, with the numerical error of every number (some ten times as long):",
-                 again + " --set accuracy=default --set error_estimate=true --out finer");
+    page.suggest(
+        "A finer answer, with the numerical error of every number (some ten times as long):",
+        again + " --set accuracy=default --set error_estimate=true --out " + beside_out(out.directory(), "finer"));
   if (!s.yields && std::isfinite(s.blow.club.head.mass) && models::wants_yielding_face(s.blow.club.head))
     page.suggest("A face that yields, as a modern driver's does:",
-                 again + " --set face.name=modern-driver --out yielding");
-  if (!s.flies) page.suggest("How far the ball goes:", again + " --set flight.law=ferguson-2022 --out flight");
+                 again + " --set face.name=modern-driver --out " + beside_out(out.directory(), "yielding"));
+  if (!s.flies)
+    page.suggest("How far the ball goes:",
+                 again + " --set flight.law=ferguson-2022 --out " + beside_out(out.directory(), "flight"));
   page.suggest("The same blow 10 mm nearer the toe, and what that changes:",
-               again + fmt::format(" --set delivery.impact_toe_mm={:g} --out toe\nhosel diff {} toe",
-                                   1e3 * s.blow.delivery.impact_toe + 10, here));
+               again + fmt::format(" --set delivery.impact_toe_mm={0:g} --out {2}\nhosel diff {1} {2}",
+                                   1e3 * s.blow.delivery.impact_toe + 10, here, beside_out(out.directory(), "toe")));
   if (fe && s.vtk) page.suggest("Ball, patch and club in ParaView, frame by frame:", "hosel open " + here);
 }
 
 }  // namespace
 
-std::string shaft_sentence(const ImpactStory& s) {
+std::string shaft_sentence(const ImpactStory& s, post::Units units) {
   const post::LaunchColumn *club = find(s, "fe-full-club"), *head = find(s, "fe-free-body");
   if (!club || !head) return {};
   std::vector<std::string> parts;
   // The error of a difference is how far it moves with the numerics of both: they have most of theirs in common.
   const auto add = [&](double change, std::optional<double> coarser, int decimals, std::string_view what) {
     const std::string error = coarser ? " " + bound(std::abs(change - *coarser), decimals) : "";
-    parts.push_back(fmt::format("{:+.{}f}{} {}", change, decimals, error, what));
+    parts.push_back(post::fixed(change, decimals, true) + fmt::format("{} {}", error, what));
   };
   const auto of_launch = [&](double (Launch::*of)() const, double si, int decimals, std::string_view what) {
     const auto change = [&](const Launch& a, const Launch& b) { return ((a.*of)() - (b.*of)()) / si; };
@@ -182,7 +170,8 @@ std::string shaft_sentence(const ImpactStory& s) {
         club->coarser && head->coarser ? std::optional(change(*club->coarser, *head->coarser)) : std::nullopt, decimals,
         what);
   };
-  of_launch(&Launch::ball_speed, 1, 2, "m/s of ball speed");
+  if (units == post::Units::golf) of_launch(&Launch::ball_speed, kMpsPerMph, 2, "mph of ball speed");
+  else of_launch(&Launch::ball_speed, 1, 2, "m/s of ball speed");
   if (!s.matched) of_launch(&Launch::launch_angle, kRadPerDeg, 2, "deg of launch angle");
   of_launch(&Launch::backspin, kRadPerSecPerRpm, 0, "rpm of backspin");
   of_launch(&Launch::sidespin, kRadPerSecPerRpm, 0, "rpm of sidespin");
@@ -201,7 +190,7 @@ std::string shaft_sentence(const ImpactStory& s) {
 }
 
 void show_shaft(Output& out, const ImpactStory& s) {
-  if (const std::string effect = shaft_sentence(s); !effect.empty())
+  if (const std::string effect = shaft_sentence(s, out.units()); !effect.empty())
     out.page().section(
         "", fmt::format("<p class='verdict good'><b>The shaft</b><span>{}</span></p>", post::escape_html(effect)));
 }
@@ -235,8 +224,9 @@ void show_impact(Output& out, const ImpactStory& s) {
     page.section("", estimated
                          ? "<p><small>± in the table of the launch: what a coarser mesh, fewer harmonics and half "
                            "the steps change, an upper bound where both converge.</small></p>"
-                         : "<p><small>No numerical error was asked for: <code>error_estimate = true</code> with "
-                           "a named accuracy runs a coarser companion.</small></p>");
+                         : "<p><small>No numerical error was estimated. With <code>accuracy</code> "
+                           "<code>default</code> or <code>reference</code>, <code>error_estimate = true</code> runs "
+                           "a coarser companion. <code>look</code> has none.</small></p>");
     page.section("Where the energy went", ledger(s.runs).html());
   }
   suggest(out, s);

@@ -37,7 +37,7 @@ struct ImpactStory {
 };
 
 /// What the full club does beside its head alone, in a sentence; empty where the two are not among the columns.
-std::string shaft_sentence(const ImpactStory& story);
+std::string shaft_sentence(const ImpactStory& story, post::Units units);
 /// That sentence on the page, before the sections of the flight.
 void show_shaft(Output& out, const ImpactStory& story);
 void show_impact(Output& out, const ImpactStory& story);

@@ -20,6 +20,7 @@
 #include "models/checked_launch.hpp"
 #include "models/fe/impact.hpp"
 #include "models/fe/plate_strike.hpp"
+#include "post/digits.hpp"
 #include "post/face_map.hpp"
 #include "post/launch_table.hpp"
 #include "post/table.hpp"
@@ -423,11 +424,10 @@ class PlateFaceJob final : public PointJob {
         stress = value("peak_stress_Pa"),
         stressed = {side * 1e3 * value("peak_stress_toe_m"), 1e3 * value("peak_stress_high_m")};
       closure = std::max(closure, std::abs(value("closure")));
-      table.rows.push_back(
-          {fmt::format("{:g}", toe), fmt::format("{:g}", high), fmt::format("{:.2f}", launch->ball_speed()),
-           fmt::format("{:.2f}", degrees(launch->launch_angle())), fmt::format("{:.0f}", rpm(launch->backspin())),
-           fmt::format("{:.0f}", rpm(launch->sidespin())), fmt::format("{:.2f}", 1e3 * value("face_travel_m")),
-           fmt::format("{:.0f}", 1e-6 * value("peak_stress_Pa"))});
+      table.rows.push_back({fmt::format("{:g}", toe), fmt::format("{:g}", high), post::fixed(launch->ball_speed(), 2),
+                            post::fixed(degrees(launch->launch_angle()), 2), post::fixed(rpm(launch->backspin()), 0),
+                            post::fixed(rpm(launch->sidespin()), 0), post::fixed(1e3 * value("face_travel_m"), 2),
+                            post::fixed(1e-6 * value("peak_stress_Pa"), 0)});
       csv += fmt::format("{:g},{:g},{:.5f},{:.5f},{:.5f},{:.3f},{:.3f},{:.4f},{:.3f},{:.3f},{:.3f},{:.5f},{:.3e}\n",
                          toe, high, launch->ball_speed(), degrees(launch->launch_angle()), degrees(launch->azimuth()),
                          rpm(launch->backspin()), rpm(launch->sidespin()), 1e3 * value("face_travel_m"),
@@ -458,6 +458,7 @@ class PlateFaceJob final : public PointJob {
     if (centre_)
       if (const auto centre = launch_at(places_[*centre_], points)) summary["centre"] = post::to_json(*centre);
     const json& finer = points[places_[again()].blow];
+    post::TextTable solved{.rows = {{"other numerics", "ball speed [m/s]", "spin [rpm]", "largest stress [MPa]"}}};
     const auto launch = launch_at(places_[again()], points);
     for (std::size_t i = companions_; i < blows_.size(); ++i) {
       const auto other = launch_from(points[i]);
@@ -469,9 +470,21 @@ class PlateFaceJob final : public PointJob {
       out.say(fmt::format("{} at toe {:g}, high {:g} mm: {:.3f} m/s, {:.0f} rpm, {:.1f} MPa of difference",
                           blows_[i].companion, -1e3 * blows_[i].place.x(), 1e3 * blows_[i].place.y(), speed, rpm(spin),
                           1e-6 * peak));
+      solved.rows.push_back({blows_[i].companion == "coarser" ? "a coarser mesh and longer steps" : blows_[i].companion,
+                             post::fixed(speed, 3), post::fixed(rpm(spin), 0), post::fixed(1e-6 * peak, 1)});
       summary["numerical_error"][blows_[i].companion] = {
           {"ball_speed_mps", speed}, {"spin_rpm", rpm(spin)}, {"peak_stress_MPa", 1e-6 * peak}};
     }
+    const Vector2d at = places_[again()].at;
+    if (solved.rows.size() > 1)
+      out.page().section("How well it was solved",
+                         fmt::format("<p class='soft'>By how much the blow at toe {:g}, high {:g} mm moves with other "
+                                     "numerics.</p>{}",
+                                     -1e3 * at.x(), 1e3 * at.y(), solved.html()));
+    out.page().section(solved.rows.size() > 1 ? "" : "How well it was solved",
+                       fmt::format("<p><small>Energy unaccounted for: at most {:.1e} of the initial energy of a "
+                                   "blow.</small></p>",
+                                   closure));
   }
 
   /// One surface with every mode as a vector field: displacement of the face, its largest deflection 1 mm.

@@ -7,6 +7,8 @@
 #include "app/read_blow.hpp"
 #include "app/read_shaft.hpp"
 #include "app/read_swing.hpp"
+#include "post/digits.hpp"
+#include "post/energy_table.hpp"
 #include "post/figure.hpp"
 #include "post/swing_recorder.hpp"
 #include "post/table.hpp"
@@ -122,14 +124,17 @@ class SwingJob final : public Job {
                 summary.contains("rigid_club_speed_mps") ? fmt::format("a club that does not bend: {:.2f} m/s",
                                                                        summary["rigid_club_speed_mps"].get<double>())
                                                          : "");
-    page.answer("lead", fmt::format("{:.1f} mm", 1e3 * last.lead), fmt::format("largest {:.1f}", 1e3 * peak_lead));
-    page.answer("droop", fmt::format("{:.1f} mm", 1e3 * last.droop), fmt::format("largest {:.1f}", 1e3 * peak_droop));
-    page.answer("attack angle", fmt::format("{:.2f}°", degrees(d.attack_angle)));
-    page.answer("club path", fmt::format("{:.2f}°", degrees(d.club_path)));
+    const auto mm = [](double x) { return post::fixed(1e3 * x, 1); };
+    const auto angle = [](double x) { return post::fixed(degrees(x), 2) + "°"; };
+    page.answer("lead", mm(last.lead) + " mm", "largest " + mm(peak_lead));
+    page.answer("droop", mm(last.droop) + " mm", "largest " + mm(peak_droop));
+    page.answer("attack angle", angle(d.attack_angle));
+    page.answer("club path", angle(d.club_path));
     if (swing.head()) {
-      page.answer("dynamic loft", fmt::format("{:.2f}°", degrees(d.dynamic_loft)));
-      page.answer("face angle", fmt::format("{:.2f}°", degrees(d.face_angle)));
+      page.answer("dynamic loft", angle(d.dynamic_loft));
+      page.answer("face angle", angle(d.face_angle));
     }
+    show_solution(page, swing, samples.back().time - samples.front().time);
     out.say(fmt::format(
         "at {:.4f} s: lead {:.1f} mm, droop {:.1f} mm; {} {:.2f} m/s, attack {:.2f} deg, path {:.2f} deg{}", last.time,
         1e3 * last.lead, 1e3 * last.droop, swing.head() ? "head" : "tip", d.club_speed, degrees(d.attack_angle),
@@ -142,6 +147,30 @@ class SwingJob final : public Job {
   }
 
  private:
+  /// Steps, what they left, and the energy balance.
+  void show_solution(RunPage& page, const models::Swing& swing, double seconds) const {
+    const auto& counts = swing.counts();
+    const solvers::Ledger& ledger = swing.ledger();
+    const bool own = options_.integrator == models::SwingIntegrator::generalized_alpha;
+    post::TextTable t{.rows = {{"", own ? "generalized-alpha" : "ida"}}};
+    t.rows.push_back({"time steps", fmt::format("{}", counts.steps)});
+    t.rows.push_back({"mean step [ms]", fmt::format("{:.4g}", 1e3 * seconds / double(std::max(counts.steps, 1L)))});
+    if (own) {
+      t.rows.push_back({"longest step allowed [ms]", fmt::format("{:.4g}", 1e3 * options_.step)});
+      t.rows.push_back({"rejected steps", fmt::format("{}", counts.rejected)});
+      t.rows.push_back({"worst residual accepted, of the forces", fmt::format("{:.1e}", counts.worst_residual)});
+      // The energy grows from near zero: what has gone through the club is the scale.
+      const double scale = std::max({std::abs(ledger.initial), std::abs(ledger.kinetic), std::abs(ledger.external)});
+      if (scale > 0)
+        t.rows.push_back(
+            {"energy unaccounted for, of the largest energy", fmt::format("{:.1e}", ledger.closure / scale)});
+    }
+    page.section("How well it was solved", t.html());
+    if (own)
+      page.section("Where the energy went", post::energy_table({{"swing", ledger}}, post::EnergyOf::swing).html());
+    else page.section("", "<p><small>IDA keeps no energy balance.</small></p>");
+  }
+
   Club club_;
   MotionInput motion_;
   models::SwingOptions options_;

@@ -163,6 +163,39 @@ TEST(RunPage, ShowsTheLargestForceAndTheLedger) {
   EXPECT_LT(pressure, 100);
 }
 
+/// Of a club with its shaft: the energy that hands and gravity bring is a row, and the balance closes. The other runs
+/// that the page proposes have names of their own.
+TEST(RunPage, TellsTheShaftsEffectAndAClosedBalance) {
+  const fs::path out = fresh_directory("page_shaft") / "toe";
+  const Outcome o = command("run driver-toe --units golf --set 'models=[\"fe-free-body\",\"fe-full-club\"]' --set " +
+                            ("accuracy=look --out " + out.string()) + "/");
+  ASSERT_EQ(o.status, 0) << o.text;
+  const std::string page = content(out / "report.html");
+  const json models = json::parse(content(out / "summary.json"))["models"];
+  const auto speed = [&](const char* model) { return models[model]["ball_speed_mps"].get<double>(); };
+  const std::string effect = fmt::format("The shaft changes this blow by {:+.2f} mph of ball speed",
+                                         (speed("fe-full-club") - speed("fe-free-body")) / 0.44704);
+  EXPECT_TRUE(holds(page, effect) && holds(o.text, effect)) << effect << "\n" << o.text;
+
+  std::vector<double> energy;
+  const std::string table = page.substr(page.find("Where the energy went"));
+  const std::regex row("<tr><td>[^<]+<td>[^<]+<td>(-?[0-9.]+)");
+  for (std::sregex_iterator it(table.begin(), table.begin() + long(table.find("</table>")), row), end; it != end; ++it)
+    energy.push_back(std::stod((*it)[1]));
+  ASSERT_EQ(energy.size(), 9u);
+  EXPECT_NEAR(energy[1], models["fe-full-club"]["solution"]["energy_J"]["external"].get<double>(), 1e-4);
+  EXPECT_GT(std::abs(energy[1]), 0.01) << "gravity and hands do work";
+  double after = 0;
+  for (std::size_t r = 2; r < energy.size(); ++r) after += energy[r];
+  EXPECT_NEAR(energy[0] + energy[1], after, 1e-3);
+
+  for (const char* word : {"finer", "toe", "again"})
+    EXPECT_TRUE(holds(page, fmt::format("--out {}-{}", out.string(), word))) << word;
+  EXPECT_TRUE(holds(page, fmt::format("hosel diff {0}/ {0}-toe", out.string())) ||
+              holds(page, fmt::format("hosel diff {0} {0}-toe", out.string())));
+  EXPECT_TRUE(holds(page, "<code>look</code> has none"));
+}
+
 TEST(RunPage, AnswersBeforeItPrintsAndShowsAFigure) {
   for (const std::string run : {"ball-modes --set count=1", "calibrate-face", "characteristic-time", "material-point",
                                 "restitution-face", "rollback", "shaft-modes --set count=2", "tangential-stiffness"}) {

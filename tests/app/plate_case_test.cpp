@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdio>
 #include <nlohmann/json.hpp>
 
 #include "command.hpp"
@@ -110,6 +111,12 @@ TEST(PlateCase, TheFaceIsJudgedByTheRulesAndByItsYieldStrength) {
   EXPECT_GT(told["characteristic_time_error_us"].get<double>(), 0);
   EXPECT_NE(thin.find("this face fails the rules' test"), std::string::npos) << thin;
   EXPECT_NE(thin.find("exceeds the yield strength of 828 MPa"), std::string::npos) << thin;
+  const std::string page = content(dir / "out/report.html");
+  EXPECT_NE(page.find("How well it was solved"), std::string::npos);
+  EXPECT_NE(page.find("<td>more modes<td>"), std::string::npos);
+  char closure[16];
+  std::snprintf(closure, sizeof closure, "%.1e", told["energy_closure"].get<double>());
+  EXPECT_NE(page.find(std::string("Energy unaccounted for: at most ") + closure), std::string::npos);
   const auto [thick, other] = run("--set face.plate.thickness.value_mm=4 --set face.plate.yield_MPa=5000");
   ASSERT_LT(other["largest_characteristic_time_us"].get<double>(), 250) << thick;
   EXPECT_NE(thick.find("this face passes the rules' test"), std::string::npos) << thick;

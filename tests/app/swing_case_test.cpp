@@ -116,6 +116,25 @@ TEST(SwingCase, RunsAndWritesItsHistory) {
   const auto energy = nlohmann::json::parse(content(dir / "out/summary.json")).at("energy_J");
   ASSERT_GT(energy.at("kinetic").get<double>(), 0.1);
   EXPECT_LT(std::abs(energy.at("closure").get<double>()), 1e-4 * energy.at("kinetic").get<double>()) << energy;
+  const std::string page = content(dir / "out/report.html");
+  for (const auto& [name, member] :
+       {std::pair{"work of grip and gravity", "external"}, {"of motion, after", "kinetic"}, {"before", "initial"}})
+    EXPECT_NE(page.find(fmt::format("<td>{}<td>{:.4f}<", name, energy.at(member).get<double>())), std::string::npos)
+        << name;
+  EXPECT_NE(page.find("How well it was solved"), std::string::npos);
+  EXPECT_NE(page.find("<td>time steps<td>40<"), std::string::npos) << "0.2 s at 5 ms";
+}
+
+TEST(SwingCase, ThePageOfIdaSaysThatItKeepsNoEnergyBalance) {
+  const auto dir = fresh_directory("swing_ida");
+  std::ofstream(dir / "case.toml") << kCase << "integrator = \"ida\"\n";
+  std::ofstream(dir / "grip.csv") << euler_motion();
+  const Outcome o = command("run " + dir.string() + " --quiet --set motion.begin_s=0 --set motion.end_s=0.03 --out " +
+                            (dir / "out").string());
+  ASSERT_EQ(o.status, 0) << o.text;
+  const std::string page = content(dir / "out/report.html");
+  EXPECT_NE(page.find("IDA keeps no energy balance"), std::string::npos);
+  EXPECT_EQ(page.find("Where the energy went"), std::string::npos);
 }
 
 /// Hands that do not move carry the weight of shaft and head, and nothing moves, from the first instant to the last.
