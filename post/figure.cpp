@@ -13,6 +13,7 @@
 #include <fstream>
 #include <stdexcept>
 
+#include "post/digits.hpp"
 #include "post/file.hpp"
 #include "post/html.hpp"
 #include "post/svg.hpp"
@@ -129,10 +130,57 @@ void place_axes(PanelFile& file, const Panel& p, int above) {
   file.left = left / w, file.right = right / w, file.top = top / h, file.bottom = bottom / h;
 }
 
+/// The levels of a map's lines for gnuplot: eight by its own choice, fewer where the numbers of two neighbours would
+/// touch on a steep flank. `width` and `height` of the panel [pixel].
+std::string contour_levels(const Panel& p, int width, int height) {
+  constexpr double letter = 5.5, line = 14;  // of the numbers' font [pixel]
+  const std::string automatic = "auto 8";
+  const std::size_t columns = p.map_x.size(), rows = p.map_y.size();
+  double low = INFINITY, high = -INFINITY;
+  for (const double v : p.map)
+    if (std::isfinite(v)) low = std::min(low, v), high = std::max(high, v);
+  if (columns < 2 || rows < 2 || !(high > low)) return automatic;
+  // Beside the axes stand their numbers, the colours and the labels.
+  const double across = p.map_x.back() - p.map_x.front(), up = p.map_y.back() - p.map_y.front();
+  double x_scale = std::max(100.0, width - 310.0) / across, y_scale = std::max(100.0, height - 165.0) / up;
+  if (p.map_equal_axes) x_scale = y_scale = std::min(x_scale, y_scale);
+  // Between two levels, so that numbers as wide as `words` lie beside or above each other; of nine cells in ten.
+  const auto wanted = [&](double words) {
+    std::vector<double> of_cells;
+    for (std::size_t j = 0; j + 1 < rows; ++j)
+      for (std::size_t i = 0; i + 1 < columns; ++i) {
+        const double v = p.map[j * columns + i];
+        const double gx = (p.map[j * columns + i + 1] - v) / (x_scale * (p.map_x[i + 1] - p.map_x[i])),
+                     gy = (p.map[(j + 1) * columns + i] - v) / (y_scale * (p.map_y[j + 1] - p.map_y[j]));
+        const double slope = gx * gx + gy * gy;
+        if (slope > 0) of_cells.push_back(slope * std::min(words / std::abs(gx), line / std::abs(gy)));  // not NaN
+      }
+    if (of_cells.empty()) return 0.0;
+    const auto steep = of_cells.begin() + std::ptrdiff_t(0.9 * double(of_cells.size() - 1));
+    std::ranges::nth_element(of_cells, steep);
+    return *steep;
+  };
+  const auto letters = [](double level) { return double(fmt::format("{:.5g}", level).size()); };
+  // The step that gnuplot itself takes for "auto 8".
+  const double power = std::pow(10, std::floor(std::log10(high - low))), places = 18 * power / (high - low);
+  const double least = power * (places > 10 ? 0.2 : places > 4 ? 0.5 : places > 2 ? 1 : 2);
+  // No wider than leaves two levels: a map with one line says little.
+  for (double step = least; step <= round_step(high - low, 3); step = round_step(1.5 * step, 1)) {
+    double words = 0;
+    const double first = std::ceil(low / step), last = std::floor(high / step);
+    for (double k = first; k < last; ++k)
+      words = std::max(words, letter * (letters(k * step) + letters((k + 1) * step)) / 2);
+    if (step < wanted(words) && round_step(1.5 * step, 1) <= round_step(high - low, 3)) continue;
+    if (step == least) break;
+    return fmt::format("incremental {:.10g},{:.10g},{:.10g}", first * step, step, last * step);
+  }
+  return automatic;
+}
+
 /// Data of panel k, and behind it the words that plot them. `alone`: the place of a map's axes in its own picture;
 /// `told`: the points of curves carry their numbers, for tell_values.
-std::pair<std::string, std::string> panel_script(const Panel& p, int k, int width, const PanelFile* alone = nullptr,
-                                                 bool told = false) {
+std::pair<std::string, std::string> panel_script(const Panel& p, int k, int width, int height,
+                                                 const PanelFile* alone = nullptr, bool told = false) {
   // A key below stands so near the label that an empty line must part them.
   const bool key = p.map.empty() && std::ranges::any_of(p.series, [](const Series& c) { return !c.label.empty(); });
   std::string data, s = "\nset title " + title(p.title, width) + "\nset xlabel " + shown(p.x_label) +
@@ -166,7 +214,9 @@ std::pair<std::string, std::string> panel_script(const Panel& p, int k, int widt
     // At most six marks: their numbers do not touch in a narrow map.
     if (range > 0) s += fmt::format("set xtics {:.10g}\n", round_step(range, 5));
     if (p.map_contours)
-      s += "set contour base\nset cntrparam cubicspline\nset cntrparam points 6\nset cntrparam levels auto 8\n"
+      s += "set contour base\nset cntrparam cubicspline\nset cntrparam points 6\nset cntrparam levels " +
+           contour_levels(p, width, height) +
+           "\n"
            "set cntrlabel onecolor format '%.5g' start 8 interval 90 font ',8'\n"
            "set style textbox opaque noborder fillcolor '#ffffff' margins 0.2,0.2\n";
     // Cells of one colour each: small enough that a coarse grid looks as smooth as a fine one.
@@ -294,11 +344,12 @@ std::string gnuplot_script(const Figure& f, std::string_view stem, bool each) {
   for (const PanelFile& file : files) {
     const Panel& p = f.panels[file.panel];
     const int k = int(panels.size());
-    auto [block, words] = panel_script(p, k, f.panel_width, &file);
+    auto [block, words] = panel_script(p, k, f.panel_width, f.panel_height, &file);
     data += block;
     panels.push_back(std::move(words));
-    together.push_back(n == 1 ? panels.back() : panel_script(p, k, f.panel_width).second);
-    telling.push_back(tells_values(p) ? panel_script(p, k, f.panel_width, &file, true).second : panels.back());
+    together.push_back(n == 1 ? panels.back() : panel_script(p, k, f.panel_width, f.panel_height).second);
+    telling.push_back(tells_values(p) ? panel_script(p, k, f.panel_width, f.panel_height, &file, true).second
+                                      : panels.back());
   }
   std::string s = data + kLook;
   const int width = columns * f.panel_width;
@@ -338,13 +389,20 @@ bool has_its_end(const fs::path& file) {
   return last.find(kind == ".svg" ? "</svg>" : kind == ".png" ? "IEND" : "%%EOF") != std::string_view::npos;
 }
 
+/// The largest of all finite values: beside it the others may be round-off.
+double largest(const std::vector<double>& values, double at_least = 0) {
+  for (const double v : values)
+    if (std::isfinite(v)) at_least = std::max(at_least, std::abs(v));
+  return at_least;
+}
+
 /// "spin [rpm]" and 2500: "spin 2500 rpm".
-std::string value_of(const std::string& label, double value) {
+std::string value_of(const std::string& label, double value, double scale) {
   const std::size_t open = label.find(" ["), close = label.find(']', open);
   std::string name = label.substr(0, open);
   if (const std::size_t arrow = name.rfind("<- "); arrow != name.npos)
     name.erase(0, name.find_first_not_of(' ', arrow + 3));
-  return fmt::format("{}{}{:.5g}{}", name, name.empty() ? "" : " ", value,
+  return fmt::format("{}{}{}{}", name, name.empty() ? "" : " ", beside(value, scale, false, 5),
                      open == label.npos || close == label.npos ? "" : " " + label.substr(open + 2, close - open - 2));
 }
 
@@ -353,6 +411,8 @@ void tell_values(const fs::path& file, const Panel& p) {
   static constexpr std::string_view kBegin = "<g onmousemove=\"gnuplot_svg.showHypertext(evt,'",
                                     kEnd = "<title> </title>";
   const std::string drawn = read_file(file);
+  double across = 0, up = 0;
+  for (const Series& c : p.series) across = largest(c.x, across), up = largest(c.y, up);
   std::string out;
   std::size_t at = 0;
   for (std::size_t begin; (begin = drawn.find(kBegin, at)) != drawn.npos;) {
@@ -362,8 +422,8 @@ void tell_values(const fs::path& file, const Panel& p) {
         series >= p.series.size() || point >= p.series[series].x.size())
       throw std::runtime_error(file.string() + ": gnuplot wrote points that are not understood");
     const Series& c = p.series[series];
-    std::string told = (c.label.empty() ? "" : c.label + ": ") + value_of(p.x_label, c.x[point]) + ", " +
-                       value_of(p.y_label, c.y[point]);
+    std::string told = (c.label.empty() ? "" : c.label + ": ") + value_of(p.x_label, c.x[point], across) + ", " +
+                       value_of(p.y_label, c.y[point], up);
     if (!c.error.empty()) told += fmt::format(" ± {:.2g}", c.error[point]);
     out += drawn.substr(at, begin - at) + "<g><title>" + escape_html(characters(told)) + "</title>";
     at = end + kEnd.size();
@@ -388,6 +448,7 @@ std::string map_values(const Panel& p, const PanelFile& file) {
   const auto Y = [&](double y) {
     return file.height * file.bottom - h * (y - p.map_y.front()) / (p.map_y.back() - p.map_y.front());
   };
+  const double most = largest(p.map), across = largest(p.map_x), up = largest(p.map_y);
   // A place reaches half way to the next.
   const auto edge = [](const std::vector<double>& at, std::size_t i, bool upper) {
     const std::size_t j = upper ? std::min(i + 1, at.size() - 1) : i - (i > 0);
@@ -402,8 +463,9 @@ std::string map_values(const Panel& p, const PanelFile& file) {
       s += fmt::format(
           "<rect x='{:.1f}' y='{:.1f}' width='{:.1f}' height='{:.1f}' fill-opacity='0'><title>{}\n{}, "
           "{}</title></rect>",
-          x0, y0, x1 - x0, y1 - y0, escape_html((p.title.empty() ? "" : p.title + ": ") + value_of(p.map_label, v)),
-          escape_html(value_of(p.x_label, p.map_x[i])), escape_html(value_of(p.y_label, p.map_y[j])));
+          x0, y0, x1 - x0, y1 - y0,
+          escape_html((p.title.empty() ? "" : p.title + ": ") + value_of(p.map_label, v, most)),
+          escape_html(value_of(p.x_label, p.map_x[i], across)), escape_html(value_of(p.y_label, p.map_y[j], up)));
     }
   return s + "</svg>";
 }

@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <optional>
 #include <vector>
 
 #include "post/html.hpp"
@@ -17,6 +17,72 @@ constexpr double kLeft = 62, kRight = 12, kTop = 10, kBottom = 44;
 
 std::string opened(double width, double height, const std::string& told) {
   return fmt::format("<svg viewBox='0 0 {} {}' role='img' aria-label='{}'>", width, height, escape_html(told));
+}
+
+constexpr double kLetter = 6.6, kLine = 14;  // width and height of a text's characters [pixel]
+
+/// A rectangle that words or a mark take, by its centre and half its sides.
+struct Box {
+  double x, y, half_width, half_height;
+  bool meets(const Box& b, double room) const {
+    return std::abs(x - b.x) < half_width + b.half_width + room && std::abs(y - b.y) < half_height + b.half_height;
+  }
+};
+
+struct Spot {
+  double x, y;
+};
+
+/// What a series covers: its points, of a line so close that no word fits between two of them.
+std::vector<Spot> covered(const SvgSeries& one, const auto& X, const auto& Y) {
+  std::vector<Spot> out;
+  for (std::size_t i = 0; i < one.x.size(); ++i) {
+    if (!std::isfinite(one.y[i])) continue;
+    const Spot to{X(one.x[i]), Y(one.y[i])};
+    if (one.radius == 0 && i > 0 && std::isfinite(one.y[i - 1])) {
+      const Spot from{X(one.x[i - 1]), Y(one.y[i - 1])};
+      const int parts = int(std::hypot(to.x - from.x, to.y - from.y) / 3) + 1;
+      for (int k = 1; k < parts; ++k)
+        out.push_back({std::lerp(from.x, to.x, double(k) / parts), std::lerp(from.y, to.y, double(k) / parts)});
+    }
+    out.push_back(to);
+  }
+  return out;
+}
+
+double distance(const Box& box, const std::vector<Spot>& spots) {
+  double least = 1e9;
+  for (const Spot& s : spots)
+    least = std::min(least, std::hypot(std::max(0.0, std::abs(s.x - box.x) - box.half_width),
+                                       std::max(0.0, std::abs(s.y - box.y) - box.half_height)));
+  return least;
+}
+
+/// Where the words of a series stand: inside the frame, clear of what is taken, clear of every line, and nearer to
+/// their own line than to another. Nothing where there is no such place.
+std::optional<Box> label_place(std::size_t own, const std::vector<std::vector<Spot>>& lines,
+                               const std::vector<Spot>& along, std::size_t letters, const Box& frame,
+                               const std::vector<Box>& taken) {
+  constexpr double clear = 3, enough = 16;  // from a line; more than `enough` is no better
+  const double half = kLetter / 2 * double(letters);
+  std::optional<Box> best;
+  double best_score = 0;
+  for (const Spot& p : along)
+    for (const double dy : {-14.0, 14.0, -24.0, 24.0, 0.0})
+      for (const double dx : {0.0, half + 8, -half - 8}) {
+        if (dx == 0 && dy == 0) continue;
+        const Box box{p.x + dx, p.y + dy, half, 6};
+        if (std::abs(box.x - frame.x) + half > frame.half_width || std::abs(box.y - frame.y) + 8 > frame.half_height)
+          continue;
+        if (std::ranges::any_of(taken, [&](const Box& b) { return box.meets(b, 6); })) continue;
+        const double mine = distance(box, lines[own]);
+        double others = enough;
+        for (std::size_t k = 0; k < lines.size(); ++k)
+          if (k != own) others = std::min(others, distance(box, lines[k]));
+        if (mine < clear || others < clear || others < 1.5 * std::min(mine, 8.0)) continue;
+        if (const double score = others - 0.5 * mine; !best || score > best_score) best = box, best_score = score;
+      }
+  return best;
 }
 
 }  // namespace
@@ -33,7 +99,7 @@ std::string svg(const SvgPlot& p) {
   const auto X = [&](double x) { return kLeft + (x - p.x0) / (p.x1 - p.x0) * w; };
   const auto beyond = [&](double y) { return kTop + (p.y1 - y) / (p.y1 - p.y0) * h; };
   const auto Y = [&](double y) { return beyond(std::clamp(y, p.y0, p.y1)); };
-  std::string s = opened(p.width, p.height, p.told);
+  std::string s;
   for (const SvgBand& b : p.bands)
     s += fmt::format("<rect class='band' x='{:.1f}' y='{:.1f}' width='{:.1f}' height='{:.1f}'/>", X(b.x0), Y(b.y1),
                      X(b.x1) - X(b.x0), Y(b.y0) - Y(b.y1));
@@ -50,8 +116,22 @@ std::string svg(const SvgPlot& p) {
         kLeft, kLeft + w, Y(y), Y(y), kLeft - 6, Y(y) + 4, round(y, dy));
   for (double x = std::ceil(p.x0 / dx) * dx; x <= p.x1; x += dx)
     s += fmt::format("<text x='{:.1f}' y='{}' text-anchor='middle'>{:g}</text>", X(x), kTop + h + 16, round(x, dx));
-  std::vector<std::array<double, 3>> labels;  // centre, half the width
-  for (const SvgSeries& one : p.series) {
+  std::vector<Box> taken;
+  for (const SvgMark& m : p.marks) {
+    const bool left = X(m.x) > kLeft + 0.6 * w;
+    s += fmt::format(
+        "<circle class='mark' cx='{:.1f}' cy='{:.1f}' r='4'/><text x='{:.1f}' y='{:.1f}' text-anchor='{}'>{}</text>",
+        X(m.x), Y(m.y), X(m.x) + (left ? -9 : 9), Y(m.y) - 4, left ? "end" : "start", escape_html(m.text));
+    const double half = kLetter / 2 * double(m.text.size());
+    taken.push_back({X(m.x), Y(m.y), 5, 5});
+    taken.push_back({X(m.x) + (left ? -1 : 1) * (9 + half), Y(m.y) - 8, half, kLine / 2});
+  }
+  std::vector<std::vector<Spot>> lines;
+  for (const SvgSeries& one : p.series) lines.push_back(covered(one, X, Y));
+  const Box frame{kLeft + w / 2, kTop + h / 2, w / 2, h / 2};
+  std::vector<const SvgSeries*> key;  // series whose words have no place beside them
+  for (std::size_t k = 0; k < p.series.size(); ++k) {
+    const SvgSeries& one = p.series[k];
     std::string points;
     for (std::size_t i = 0; i < one.x.size(); i += std::max<std::size_t>(1, one.x.size() / kMost)) {
       if (!std::isfinite(one.y[i])) continue;
@@ -65,45 +145,35 @@ std::string svg(const SvgPlot& p) {
           "<svg x='{0}' y='{1}' width='{2}' height='{3}' viewBox='{0} {1} {2} {3}'><polyline class='{4}' "
           "points='{5}'/></svg>",
           kLeft, kTop, w, h, one.style, points);
-    if (one.label.empty() || one.y.empty()) continue;
-    // Above or below the line, where the words are farthest from every line.
-    const double half = 3.3 * double(one.label.size());
-    double best = -1, at_x = 0, at_y = 0;
-    for (std::size_t i = 0; i < one.y.size(); ++i)
-      for (const double above : {14.0, -14.0, 24.0, -24.0}) {
-        const double cx = X(one.x[i]), cy = Y(one.y[i]) - above;
-        if (cx - half < kLeft || cx + half > kLeft + w || cy < kTop + 8 || cy > kTop + h - 8) continue;
-        // Words of an earlier label are no room.
-        if (std::ranges::any_of(labels, [&](const auto& l) {
-              return std::abs(l[0] - cx) < l[2] + half + 6 && std::abs(l[1] - cy) < 14;
-            }))
-          continue;
-        double nearest = 20 - 0.2 * std::abs(above);  // room enough
-        for (const SvgSeries& other : p.series)
-          for (std::size_t k = 1; k < other.x.size(); ++k)
-            for (const double t : {0.0, 0.25, 0.5, 0.75, 1.0}) {  // a steep line crosses words between its points
-              const double x = X(std::lerp(other.x[k - 1], other.x[k], t)),
-                           y = Y(std::lerp(other.y[k - 1], other.y[k], t));
-              nearest = std::min(
-                  nearest, std::hypot(std::max(0.0, std::abs(x - cx) - half), std::max(0.0, std::abs(y - cy) - 6)));
-            }
-        if (nearest > best) best = nearest, at_x = cx, at_y = cy;
-      }
-    if (best >= 0) labels.push_back({at_x, at_y, half});
-    if (best >= 0)
-      s += fmt::format("<text class='{}' x='{:.1f}' y='{:.1f}' text-anchor='middle'>{}</text>", one.style, at_x,
-                       at_y + 4, escape_html(one.label));
+    if (one.label.empty() || lines[k].empty()) continue;
+    // The peak, and places along the line.
+    std::vector<Spot> along{*std::ranges::min_element(lines[k], {}, &Spot::y)};
+    for (std::size_t i = 0; i < lines[k].size(); i += 1 + lines[k].size() / 150) along.push_back(lines[k][i]);
+    if (const auto place = label_place(k, lines, along, one.label.size(), frame, taken)) {
+      taken.push_back(*place);
+      s += fmt::format("<text class='{}' x='{:.1f}' y='{:.1f}' text-anchor='middle'>{}</text>", one.style, place->x,
+                       place->y + 4, escape_html(one.label));
+    } else {
+      key.push_back(&one);
+    }
   }
-  for (const SvgMark& m : p.marks) {
-    const bool left = X(m.x) > kLeft + 0.6 * w;
-    s += fmt::format(
-        "<circle class='mark' cx='{:.1f}' cy='{:.1f}' r='4'/><text x='{:.1f}' y='{:.1f}' text-anchor='{}'>{}</text>",
-        X(m.x), Y(m.y), X(m.x) + (left ? -9 : 9), Y(m.y) - 4, left ? "end" : "start", escape_html(m.text));
+  double height = p.height, x = kLeft;
+  for (const SvgSeries* one : key) {  // rows beneath the axis
+    const double wide = 30 + kLetter * double(one->label.size());
+    if (x == kLeft || x + wide > p.width) x = kLeft, height += 18;
+    s += one->radius > 0 ? fmt::format("<circle class='{}' cx='{:.1f}' cy='{:.1f}' r='{}'/>", one->style, x + 9,
+                                       height - 9, one->radius)
+                         : fmt::format("<polyline class='{}' points='{:.1f},{:.1f} {:.1f},{:.1f}'/>", one->style, x,
+                                       height - 9, x + 18, height - 9);
+    s += fmt::format("<text class='{}' x='{:.1f}' y='{:.1f}'>{}</text>", one->style, x + 23, height - 5,
+                     escape_html(one->label));
+    x += wide + 12;
   }
-  return s + fmt::format(
-                 "<text x='{:.1f}' y='{}' text-anchor='middle'>{}</text><text transform='translate(13 {:.1f}) "
-                 "rotate(-90)' text-anchor='middle'>{}</text></svg>",
-                 kLeft + w / 2, p.height - 8, escape_html(p.x_label), kTop + h / 2, escape_html(p.y_label));
+  return opened(p.width, height, p.told) + s +
+         fmt::format(
+             "<text x='{:.1f}' y='{}' text-anchor='middle'>{}</text><text transform='translate(13 {:.1f}) "
+             "rotate(-90)' text-anchor='middle'>{}</text></svg>",
+             kLeft + w / 2, p.height - 8, escape_html(p.x_label), kTop + h / 2, escape_html(p.y_label));
 }
 
 std::string svg(const SvgBars& b) {

@@ -108,6 +108,31 @@ TEST(Figure, PointsAndPlacesTellTheirValues) {
   EXPECT_LT(files[1].top, files[1].bottom);
 }
 
+/// On steep flanks there are fewer level lines, so that their numbers do not touch; a gentle map keeps gnuplot's own.
+TEST(Figure, NumbersOfLevelLinesDoNotTouch) {
+  Panel steep{.map_x = {-20, -10, 0, 10, 20}, .map_y = {0.19, 0.2, 0.21}, .map_symmetric = true};
+  for (int j = 0; j < 3; ++j)
+    for (const double x : steep.map_x) steep.map.push_back(0.44 - 0.00415 * x * x);
+  Panel gentle = steep;
+  gentle.map = {0, 1, 2, 3, 4, 0, 1, 2, 3, 4, 0, 1, 2, 3, 4};
+  const auto levels = [](const Panel& p) {
+    const std::string script = gnuplot_script({.panels = {p}}, "m", false);
+    const std::size_t at = script.find("cntrparam levels ") + 17;
+    return script.substr(at, script.find('\n', at) - at);
+  };
+  EXPECT_EQ(levels(steep), "incremental -1,0.5,0") << "0.2 by gnuplot";
+  EXPECT_EQ(levels(gentle), "auto 8");
+}
+
+/// What is round-off beside the other points is told as zero.
+TEST(Figure, RoundOffIsToldAsZero) {
+  Panel p{.title = "m", .map_x = {-1, 1}, .map_y = {0, 1}, .map = {-0.0, 6.0467e-14, 5, 7}, .map_label = " [rpm]"};
+  const std::string told = map_values(p, {"", "", "", true, 0, 100, 100, 0.1, 0.9, 0.1, 0.9});
+  EXPECT_NE(told.find("m: 0 rpm"), std::string::npos) << told;
+  EXPECT_EQ(told.find("-0 "), std::string::npos) << told;
+  EXPECT_EQ(told.find("e-14"), std::string::npos) << told;
+}
+
 TEST(Figure, LongTitlesAreBroken) {
   Figure f = two_panels();
   f.title = std::string(100, 'a') + " " + std::string(100, 'b');  // two panels of 620 pixels hold some 160 letters
