@@ -78,10 +78,16 @@ Head read_head_values(Table table, bool whole, const std::optional<Head>& named)
             "{:g} mm (allowed: {:g} to {:g} mm; {})",
             moment, head.mass, 1e3 * r, 1e3 * limits::gyration.min, 1e3 * limits::gyration.max, limits::gyration.why));
   }
-  // Of a named head too, where a case changes its mass alone.
-  if (named && !faults.empty()) table.fail("", faults.front());
+  if (!faults.empty()) {
+    // At the tensor, or at the mass where a case changes that alone; what the command line says comes first.
+    std::string at;
+    for (const std::string_view stem : {"inertia", "mass"})
+      for (const std::string& key : table.keys())
+        if (split_unit(key).stem == stem && (at.empty() || (table.set_by_command(key) && !table.set_by_command(at))))
+          at = key;
+    if (named || !at.empty()) table.fail(at, faults.front());
+  }
   for (const std::string& key : table.keys()) {
-    if (key.starts_with("inertia") && !faults.empty()) table.fail(key, faults.front());
     if (key.starts_with("cg") && head.cg.x() > 0)
       table.fail(key, fmt::format("the centre of gravity lies {:g} mm in front of the face (Xc points out of the face: "
                                   "the first component is negative or zero)",

@@ -272,6 +272,11 @@ bool Table::has(std::string_view key) const {
   return as_table(node_).contains(key);
 }
 
+bool Table::set_by_command(std::string_view key) const {
+  const toml::node* node = as_table(node_).get(key);
+  return node && document_->set.contains(node);
+}
+
 namespace {
 
 /// Whether a name may be this stem and a unit behind it.
@@ -847,6 +852,14 @@ void find_unknown(const std::shared_ptr<detail::Document>& d, const toml::table&
   for (auto&& [key, node] : t) {
     const std::string name = dotted(path, key.str());
     if (!known.contains(key.str())) {
+      // The name of a quantity without its unit.
+      for (const std::string& k : known)
+        if (const SplitName split = split_unit(k); split.unit && split.stem == key.str())
+          throw InputError(fmt::format("{}: {}: has no unit, expected {} ({})", place(*d, node), name,
+                                       with_article(split.unit->dimension),
+                                       offered(split.stem, split.unit->dimension)));
+      if (d->quantities.contains(name))
+        throw InputError(fmt::format("{0}: {1}: has no unit; `hosel keys` shows that of '{1}'", place(*d, node), name));
       const std::string near = nearest(key.str(), {known.begin(), known.end()});
       for (const std::string& k :
            near.empty() ? std::vector<std::string>{known.begin(), known.end()} : std::vector{near})

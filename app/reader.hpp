@@ -159,6 +159,8 @@ class Table {
   /// What can be meant and is likely a slip: a warning of every run, a comment of `hosel check`.
   void doubt(std::string_view text);
 
+  /// Whether the command line says this key, by `--set`.
+  bool set_by_command(std::string_view key) const;
   /// An error at this key (or at the table where the key is empty or absent).
   [[noreturn]] void fail(std::string_view key, std::string_view what) const;
 
