@@ -22,7 +22,7 @@ struct NullVector {
 
 struct Likeness {
   std::vector<Absorption> absorption;
-  std::vector<NullVector> null_vectors;  ///< singular values below 0.1
+  std::vector<NullVector> null_vectors;  ///< at most four, the smallest singular values first; none above 0.1
 };
 
 struct EffectColumn {

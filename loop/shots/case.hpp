@@ -51,7 +51,8 @@ struct ShotCase : Case {
   std::map<std::string, double> noise;        ///< by header, header's unit
   std::map<std::string, double> input_noise;  ///< the same for inputs
   std::vector<Known> known;                   ///< of what the base declares, for all rows alike: by another measurement
-  std::vector<Known> varying;  ///< of what the base declares once and every row has its own of: between the rows
+  /// Quantities that the base declares once although they differ between rows, each with its standard deviation.
+  std::vector<Known> varying;
 };
 
 /// The rows that were read, of which the shots may be means.

@@ -239,8 +239,8 @@ NextExperiment design(const ShotCase& c, const Problem& problem, const ShotModel
   constexpr double wanted = 5.5 * 5.5;
   std::size_t single = 0;
   for (const int i : rows) single += std::size_t(model.count(i));
-  const std::size_t most = std::max<std::size_t>(12, single * 3 / 2);  // the session once more
-  std::vector<std::size_t> chosen;                                     // for all pairs together
+  const std::size_t most = std::max<std::size_t>(12, single * 3 / 2);
+  std::vector<std::size_t> chosen;   // for all pairs together
   std::vector<std::size_t> partial;  // the most that shots can do for a pair that they do not part
   std::vector<std::string> sentences, sensors;
   for (const Rivals& r : rivals(so_far)) {

@@ -59,8 +59,9 @@ Shots read_shots(const post::Sheet& sheet, bool flights = false);
 
 /// Of unit length.
 Vec3 direction(double up, double right);
-/// The launch that a row records: ball speed, launch angle and spin (by components, or by rate and tilt), straight
-/// where no azimuth is there. Absent where one of them is missing.
+/// The launch that a row records: ball speed, launch angle and spin (by components, or by rate and tilt).
+/// Absent without ball speed, launch angle, or backspin or spin rate; a missing tilt, sidespin or azimuth counts as
+/// zero.
 std::optional<Launch> seen_launch(const Shots& shots, std::size_t row);
 
 /// Fills inputs that the shots lack from a file with one row per value of `by`. Summaries (`mean_`,

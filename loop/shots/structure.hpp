@@ -14,7 +14,7 @@ namespace hosel::loop {
 struct Regressor {
   std::string column;     ///< header, "shot" for the order, "constant"
   std::string kind;       ///< constant, trend, curvature, interaction, group, step, oscillation, response, lag
-  std::string detail;     ///< "with club_speed_mps", "= 7i", "at shot 40"
+  std::string detail;     ///< "with club_speed_mps", "= 7i", "at 8 % of the session"
   bool foreign = false;   ///< see Finding
   Eigen::VectorXd value;  ///< per shot of the model; centred, unit mean square over the rows
   int channel = -1;       ///< the only channel that it is tried on; -1: all
