@@ -21,15 +21,30 @@ constexpr double kCentral = 1e-3, kForward = 1e-5;  // difference steps, of a pa
 constexpr double kFlightStep = 1e-2;
 constexpr models::FlightOptions kFlight = {.tolerance = 1e-6};
 
-Launch plus(Launch a, const Launch& b, double sign) {
-  a.velocity += sign * b.velocity;
-  a.spin += sign * b.spin;
-  a.head_velocity += sign * b.head_velocity;
-  a.head_spin += sign * b.head_spin;
-  return a;
+/// Moves the loft by secants until `miss`, which rises with it, is less than `enough` or no number. Returns the last
+/// miss that was computed.
+double follow_loft(double& loft, int most, double enough, const auto& miss) {
+  double slope = kLaunchPerLoft, before = 0, step = 0;
+  for (int k = 0; k < most; ++k) {
+    const double now = miss();
+    if (!std::isfinite(now) || std::abs(now) < enough) return now;
+    if (k > 0 && std::abs(now - before) > 1e-14) slope = std::clamp((now - before) / step, 0.2, 2.0);
+    before = now;
+    step = -now / slope;
+    loft += step;
+  }
+  return before;
 }
 
 }  // namespace
+
+Launch plus(Launch a, const Launch& b, double times) {
+  a.velocity += times * b.velocity;
+  a.spin += times * b.spin;
+  a.head_velocity += times * b.head_velocity;
+  a.head_spin += times * b.head_spin;
+  return a;
+}
 
 int flight_answer(Output o) {
   static_assert(
@@ -173,22 +188,13 @@ bool ShotModel::read(const Shot& trial, int shot, const Model& model, const doub
   return good;
 }
 
-/// Secants: the launch angle rises with the loft, by some 0.8 of it.
 bool ShotModel::find_loft(Shot& trial, int shot, const Model& model, const double* parameters) const {
-  double& loft = trial.blow.delivery.dynamic_loft;
-  double slope = kLaunchPerLoft, before = 0, step = 0;
-  for (int k = 0; k < 30; ++k) {
+  const double left = follow_loft(trial.blow.delivery.dynamic_loft, 30, 1e-11, [&] {
     Shot t = trial;
     const Launch l = launched(t, shot, model, parameters);
-    const double miss = seen_angle(t, model, parameters, l) - seen_->value[shot] * seen_->channel.si;
-    if (!std::isfinite(miss)) return false;
-    if (std::abs(miss) < 1e-11) return true;
-    if (k > 0 && std::abs(miss - before) > 1e-14) slope = std::clamp((miss - before) / step, 0.2, 2.0);
-    before = miss;
-    step = -miss / slope;
-    loft += step;
-  }
-  return std::abs(before) < 1e-7;
+    return seen_angle(t, model, parameters, l) - seen_->value[shot] * seen_->channel.si;
+  });
+  return std::abs(left) < 1e-7;
 }
 
 bool ShotModel::asked(int shot, const Model& model, const double* parameters, Shot& out) const {
@@ -204,20 +210,17 @@ bool ShotModel::predict_by(const Surrogate::Answer& other, int shot, const Model
                            double* out) const {
   Shot there = trial(shot);
   if (seen_ && !find_loft(there, shot, model, parameters)) return false;
-  double slope = kLaunchPerLoft, before = 0, step = 0;
-  for (int k = 0; k < 12; ++k) {
-    Shot t = there;
+  Shot t;
+  Launch l;
+  const double enough = radians(0.02);
+  const double left = follow_loft(there.blow.delivery.dynamic_loft, 12, enough, [&] {
+    t = there;
     change(model, parameters, t);
-    Launch l = other(t);
+    l = other(t);
     change(model, parameters, t, l);
-    const double miss = seen_ ? seen_angle(t, model, parameters, l) - seen_->value[shot] * seen_->channel.si : 0;
-    if (std::abs(miss) < radians(0.02)) return read(t, shot, model, parameters, l, out);
-    if (k > 0 && step != 0) slope = std::clamp((miss - before) / step, 0.3, 2.0);
-    before = miss;
-    step = -miss / slope;
-    there.blow.delivery.dynamic_loft += step;
-  }
-  return false;
+    return seen_ ? seen_angle(t, model, parameters, l) - seen_->value[shot] * seen_->channel.si : 0.0;
+  });
+  return std::abs(left) < enough && read(t, shot, model, parameters, l, out);
 }
 
 bool ShotModel::predict(const Shot& trial, int shot, const Model& model, const double* parameters, double* out) const {

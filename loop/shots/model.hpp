@@ -15,8 +15,10 @@ namespace hosel::loop {
 
 /// What stands for a base that answers slowly: the closed-form eccentric impact of rigid bodies.
 const models::ImpactModel& closed_form();
-/// Nearly: what a search for the loft that shows a launch angle begins with.
+/// First slope of the search for a loft: launch angle per loft, about 0.8.
 inline constexpr double kLaunchPerLoft = 0.8;
+/// One launch and so many times another, in every component.
+Launch plus(Launch a, const Launch& b, double times);
 /// Row of models::FlightAnswers.
 int flight_answer(Output o);
 
