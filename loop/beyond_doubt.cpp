@@ -23,9 +23,7 @@ class Scores {
     block_ = loss.block;
     for (Eigen::Index i = 0; i + block_ <= z_.size(); i += block_)
       weight_.push_back(loss.weight(z_.segment(i, block_).squaredNorm()));
-    int k = 0;
-    at_.resize(f.size());
-    for (const Parameter* q : f.model.parameters()) at_[k] = f.p[k] / q->scale, ++k;
+    at_ = f.p.cwiseQuotient(scales(f.model));
   }
 
   /// One Gauss-Newton step of parameters first to first + count, the others held, on the blocks that `take` names; the
@@ -74,7 +72,7 @@ bool agree(const std::vector<Size>& looks, const Rules& rules) {
 std::vector<const Parametrisation*> steady(const Study& study, const Fit& f) {
   const Problem& problem = study.problem;
   const Scores train(problem, Part::train, f), holdout(problem, Part::holdout, f);
-  const auto subsets = problem.subsets(Part::train);
+  const auto subsets = problem.subsets();
   const auto all = [](std::size_t) { return true; };
   std::vector<const Parametrisation*> passed;
   Eigen::Index first = 0;
@@ -137,7 +135,7 @@ std::optional<Candidate> keep(const Study& study, const Fit& start) {
 BeyondDoubt beyond_doubt(const Study& study) {
   const Problem& problem = study.problem;
   const Selection& s = study.selection;
-  if (problem.subsets(Part::train).empty()) return {};
+  if (problem.subsets().empty()) return {};
   // The chosen set, and those that do nearly as well in its place.
   const std::size_t size = s.chosen.model.forms.size();
   // The sum of three effects follows any smooth form.

@@ -6,12 +6,17 @@
 #include <cstddef>
 #include <limits>
 #include <numbers>
+#include <numeric>
 #include <utility>
 #include <vector>
 
 namespace hosel::loop {
 
 inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
+/// Relative, or in the unit at hand where nothing is that small: what differs by less is the same.
+inline constexpr double kRoundOff = 1e-9;
+/// In place of zero where a number is divided by or its logarithm taken.
+inline constexpr double kTiny = 1e-300;
 
 /// Least and largest of what `of` gives of each, NaN left out; infinite, the least above the largest, of none.
 template <class Of>
@@ -31,10 +36,19 @@ inline double at_share(const std::vector<double>& rising, double share) {
 }
 
 /// Whether so wide a range about a middle is more than round-off; false for infinite ones too.
-inline bool varies(double width, double middle) { return width > 1e-9 * (1 + std::abs(middle)); }
+inline bool varies(double width, double middle) { return width > kRoundOff * (1 + std::abs(middle)); }
 
 /// Minus the logarithm of the standard normal density at zero.
 inline const double kLogRootTwoPi = 0.5 * std::log(2 * std::numbers::pi);
+
+/// Places of `n` things by rising `of` a place; equals in their order.
+template <class Index = int>
+std::vector<Index> rising_order(std::size_t n, const auto& of) {
+  std::vector<Index> places(n);
+  std::iota(places.begin(), places.end(), Index(0));
+  std::ranges::stable_sort(places, {}, of);
+  return places;
+}
 
 /// The upper of the two middle values where their number is even; 0 of none.
 inline double median(std::vector<double> x) {

@@ -9,13 +9,6 @@
 namespace hosel::loop {
 namespace {
 
-Eigen::VectorXd scales(const Model& model) {
-  Eigen::VectorXd s(model.size());
-  Eigen::Index k = 0;
-  for (const Parameter* q : model.parameters()) s[k++] = q->scale;
-  return s;
-}
-
 /// One row for each parameter of which something is known beside the data: its scale over that standard deviation.
 Eigen::MatrixXd prior_of(const Model& model) {
   const std::vector<const Parameter*> all = model.parameters();
@@ -64,6 +57,13 @@ bool at_bound(const Model& model, const Eigen::VectorXd& p) {
 }
 
 }  // namespace
+
+Eigen::VectorXd scales(const Model& model) {
+  Eigen::VectorXd s(model.size());
+  Eigen::Index k = 0;
+  for (const Parameter* q : model.parameters()) s[k++] = q->scale;
+  return s;
+}
 
 Eigen::VectorXd whitened(const Problem& problem, Part part, const Model& model, const Eigen::VectorXd& p) {
   Eigen::VectorXd z;
@@ -160,8 +160,8 @@ Fit fit(const Problem& problem, Part part, const Model& model, std::vector<Eigen
     }
   }
   if (at.empty()) return best;
-  // A size at the edge of what is plausible explains nothing: another optimum goes before it that leaves less than a
-  // parameter's cost more.
+  // An optimum inside the range is preferred to one at its edge if its deviance is higher by less than the cost of a
+  // parameter.
   const auto taken = std::ranges::find_if(at, [&](const solvers::Minimum& m) {
     return !at_bound(model, m.parameters.cwiseProduct(scale)) &&
            2 * (m.cost - at.front().cost) < Rules{}.parameter_cost;

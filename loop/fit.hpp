@@ -14,6 +14,9 @@ struct Fit {
   int size() const { return int(p.size()); }
 };
 
+/// Parameter::scale of every parameter.
+Eigen::VectorXd scales(const Model& model);
+
 /// Bounded least squares from each start [SI] through the problem's stages, the best of the last. Of more than `most`
 /// starts those of least deviance are followed. `near`: the starts are good, early windows are left out.
 Fit fit(const Problem& problem, Part part, const Model& model, std::vector<Eigen::VectorXd> starts, std::size_t most,

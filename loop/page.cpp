@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "loop/report.hpp"
+#include "loop/rules.hpp"
 #include "post/digits.hpp"
 #include "post/html.hpp"
 #include "post/labels.hpp"
@@ -147,7 +148,8 @@ std::string between_groups(const LoopResult& r) {
     s += fmt::format("<tr><td>{}<td class='l'>{}<td class='l'>{}<td>{}<td>{} to {}<td>{}</tr>", g.groups,
                      escape_html(g.along == "shot" ? "stretches of the session" : g.along),
                      escape_html(g.unit == "1" ? post::spoken(g.of) : "reading of " + post::label(g.of)), number(g.sd),
-                     number(g.low), number(g.high), g.p < 0.001 ? "&lt; 0.001" : fmt::format("{:.3f}", g.p));
+                     number(g.low), number(g.high),
+                     g.p < kByChance ? fmt::format("&lt; {}", kByChance) : fmt::format("{:.3f}", g.p));
   return s + "</table></div>" +
          gloss(
              "What the corrected model leaves, put down to one quantity at a time, whose value differs from group to "

@@ -1,5 +1,7 @@
 #include "loop/problem.hpp"
 
+#include "loop/result.hpp"
+
 namespace hosel::loop {
 
 int Model::size() const {
@@ -26,5 +28,8 @@ std::vector<std::string> Model::effects(std::size_t first) const {
   for (std::size_t k = first; k < forms.size(); ++k) names.push_back(forms[k]->effect);
   return names;
 }
+
+std::vector<Location> Problem::shapes(const Selection&) const { return {}; }
+std::vector<Location> Problem::doubts(const Selection&) const { return {}; }
 
 }  // namespace hosel::loop

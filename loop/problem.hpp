@@ -34,7 +34,7 @@ struct Channel {
 
   bool trusted() const { return declared && !refuted; }
   /// What no instrument is below: its last digit.
-  double least_noise() const { return std::max(rounding_deviation(resolution), 1e-9); }
+  double least_noise() const { return std::max(rounding_deviation(resolution), kRoundOff); }
   /// Of a channel whose noise is declared.
   void refute(bool by_scatter) {
     if (refuted && !by_scatter) noise = *declared;
@@ -183,8 +183,8 @@ class Problem {
     double values = 0, log_whitening = 0;
   };
   virtual Density density(Part part) const = 0;
-  /// Subsets of the judged blocks of a part in which a true effect has one size; none: not looked at.
-  virtual std::vector<std::vector<bool>> subsets(Part /*part*/) const { return {}; }
+  /// Subsets of the judged training blocks in which a true effect has one size; none: not looked at.
+  virtual std::vector<std::vector<bool>> subsets() const { return {}; }
   virtual std::vector<Stage> stages() const = 0;  ///< of a fit; the loss of the last is the one that counts
   virtual Effort effort() const { return {}; }
 
@@ -220,12 +220,12 @@ class Problem {
   /// Where it sits, the plainest first.
   virtual std::vector<Location> places(const Selection& selection) const = 0;
   /// What scatter alone does not do, where the scatter is not the declared: a shape, a mixture.
-  virtual std::vector<Location> shapes(const Selection& selection) const = 0;
+  virtual std::vector<Location> shapes(const Selection& selection) const;
   /// A sentence where more rows lie far off than the declared noise allows, and in no one column: its tails are
   /// heavier.
   virtual std::optional<std::string> heavy_tails(const Selection& /*selection*/) const { return {}; }
   /// Why no model that is fitted to these data is to be trusted: rows lost, or missed by many noise scales.
-  virtual std::vector<Location> doubts(const Selection& selection) const = 0;
+  virtual std::vector<Location> doubts(const Selection& selection) const;
   /// What to measure to break a tie, or to find the effect without a name.
   virtual NextExperiment next_experiment(const LoopResult& so_far) const = 0;
 };

@@ -21,7 +21,7 @@ using nlohmann::json;
 /// round-off, and files stay the same on any number of threads.
 json value(double x) {
   if (!std::isfinite(x)) return nullptr;
-  if (std::abs(x) < 1e-300) return 0.0;
+  if (std::abs(x) < kTiny) return 0.0;
   return std::stod(fmt::format("{:.9g}", x));
 }
 

@@ -1,6 +1,7 @@
 /// The thresholds of the loop. The README of this folder gives their reasons.
 #pragma once
 
+#include <cstddef>
 #include <numbers>
 
 #include "loop/deviation.hpp"
@@ -14,6 +15,10 @@ inline constexpr double kBeyondChance = 3 * std::numbers::ln10;
 inline constexpr double kMention = 2;
 /// Fewer rows have no form.
 inline constexpr int kFewestRows = 12;
+/// Fewer rows, or different numbers, show no relation between columns and no distribution.
+inline constexpr std::size_t kFewestToLearn = 20;
+/// A column with fewer different values is too coarse to show how it was made.
+inline constexpr std::size_t kFewestDifferent = 8;
 /// Of a column that other rows lack: fewer tell neither their own noise nor what the column is.
 inline constexpr int kFewestOfRows = 10;
 
@@ -21,7 +26,8 @@ inline constexpr int kFewestOfRows = 10;
 inline constexpr double kTold = 0.05;
 /// Squared reading, in units of its own sigma, beyond which it counts the same.
 inline constexpr double kMostSquare = 36;
-/// Share of the shots beyond which those far off are no exceptions; three at least.
+/// Share of the shots beyond which those far off are no exceptions. At least three shots; two if they are far off
+/// without a recording error, and for flights.
 inline constexpr double kMany = 0.08;
 /// No fit explains data of which such a share is flagged or explained by nothing, or whose scatter is so many times
 /// what is declared.
@@ -32,12 +38,12 @@ struct Rules {
   double remaining = 0.005;       ///< level of the test for what is left
   double remaining_signal = 4.9;  ///< or a signal of that size, where the noise is declared
   double gain = 22;               ///< least fall of the deviance for a first effect
-  double threshold_gain = 32;     ///< least fall by a threshold effect that opens the gate on its own
-  double further_gain = 16;       ///< least fall of the criterion for one more effect
+  double further_gain = 16;       ///< least fall of the criterion for one more effect; twice that of the deviance by a
+                                  ///< threshold effect opens the gate on its own
   double further_share = 0.7;     ///< of it is enough where structure is left without it
-  double parameter_cost = 4;      ///< criterion = deviance + cost * parameters + complexity of the forms
+  double parameter_cost = 4;      ///< criterion = deviance + cost * parameters + complexity of the forms; the held-out
+                                  ///< deviance must not rise by more
   double tie = 7;                 ///< candidates within this of the best criterion tie with it
-  double holdout_loss = 4;        ///< the held-out deviance must not rise by more
   double steady = 0.2;          ///< of its size an effect may differ between parts of the rows where structure is left,
   double present = 4;           ///< and be there in each by so many standard errors
   double worse = 0.02;          ///< of its held-out error a channel may lose by what is kept there
@@ -46,7 +52,6 @@ struct Rules {
   double scatter_error = 4.2;   ///< declared noise is refuted beyond so many standard errors of its logarithm
   double scatter_ratio = 1.25;  ///< and beyond this factor either way
   int flips = 999;              ///< of signs in the tests that are calibrated so
-  unsigned long seed = 1;
 
   /// Time histories: the tests for structure have closed-form levels, adjusted for their number.
   static Rules of_histories() {

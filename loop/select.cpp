@@ -68,7 +68,7 @@ Selection select(const Problem& problem, const std::vector<const Parametrisation
   s.before =
       problem.structure(search.base, effect ? search.singles.front().fit : search.base, search.directions(), rules);
   s.structured = s.before.p < rules.gate || s.before.signal > rules.remaining_signal ||
-                 search.threshold_gain() > rules.threshold_gain;
+                 search.threshold_gain() > 2 * rules.further_gain;
   const auto choose = [&](const Fit& f) {
     s.chosen = f;
     s.after = problem.structure(f, f, Eigen::MatrixXd(0, 0), rules);

@@ -164,7 +164,7 @@ std::optional<Location> shared_by_groups(const Study& study, const Fit& f) {
                               fmt::join(names, " and "), left->fall, least)};
 }
 
-/// The first that applies, in the contract's order.
+/// Returns the first verdict whose condition holds, in the order below.
 Verdict judge(const Study& study, const std::vector<WrongColumn>& columns, const std::vector<Location>& without_name,
               const Rival& one, const std::vector<std::string>& restitution, std::vector<Location>& unexplained) {
   const Problem& problem = study.problem;
@@ -366,8 +366,8 @@ void conclude(const Study& study, LoopResult& result) {
 
   // The holdout is read here, once: what was chosen must not fail there.
   bool shown = s.level > 0 && named;
-  if (shown &&
-      deviance(problem, Part::holdout, chosen) > deviance(problem, Part::holdout, s.base) + study.rules.holdout_loss) {
+  if (shown && deviance(problem, Part::holdout, chosen) >
+                   deviance(problem, Part::holdout, s.base) + study.rules.parameter_cost) {
     result.notes.push_back(fmt::format("{} explained the training data and not those held out: not adopted",
                                        fmt::join(chosen.model.effects(study.base.size()), " and ")));
     if (result.verdict != Verdict::noise_contradicted) result.verdict = Verdict::insufficient;

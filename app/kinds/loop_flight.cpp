@@ -12,7 +12,7 @@
 #include "app/read_flight.hpp"
 #include "app/read_paths.hpp"
 #include "app/read_sheet.hpp"
-#include "loop/flights/run.hpp"
+#include "loop/flights/problem.hpp"
 
 namespace hosel::app {
 namespace {

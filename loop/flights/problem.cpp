@@ -16,6 +16,7 @@
 #include "loop/shots/inputs.hpp"
 #include "loop/shots/scatter.hpp"
 #include "loop/shots/split.hpp"
+#include "loop/verdict.hpp"
 #include "solvers/errors.hpp"
 
 namespace hosel::loop {
@@ -310,7 +311,7 @@ void FlightProblem::expand(const Model& model, const Eigen::VectorXd& p) {
         t.own = own[i];
       }
     }
-    if (change < 0.03) break;
+    if (change < case_.rules.noise_change) break;
   }
   slopes(model, p);
   factor();
@@ -522,12 +523,11 @@ Problem::Density FlightProblem::density(Part part) const {
 
 /// Flights that no model of the family explains: beyond what the noise allows once in a hundred such sets.
 bool FlightProblem::screen(const Selection& selection) {
-  constexpr double one_in = 0.01;
   const Fit& at = selection.richest;
   std::set<int> now = out_;
   const double n = double(train_.size() + holdout_.size());
-  const auto limit = [n](std::size_t readings) {
-    return boost::math::quantile(boost::math::complement(boost::math::chi_squared(double(readings)), one_in / n));
+  const auto limit = [n, level = case_.rules.gate](std::size_t readings) {
+    return boost::math::quantile(boost::math::complement(boost::math::chi_squared(double(readings)), level / n));
   };
   std::vector<Flag> flags = flags_;
   for (const Part part : {Part::train, Part::holdout}) {
@@ -661,6 +661,17 @@ NextExperiment FlightProblem::next_experiment(const LoopResult& so_far) const {
   if (so_far.verdict == Verdict::insufficient)
     return {.text = "more flights: the list of smallest effects says what these could have shown"};
   return {.text = "nothing is tied; flights at other speeds and spins would narrow the parameters most"};
+}
+
+LoopResult run(const FlightCase& c) {
+  FlightProblem problem(c);
+  LoopResult result(c, c.shots.rows());
+  result.unused = problem.unused();
+  result.forms = problem.forms();
+  result.notes = c.notes;
+  const Study study(problem, result.forms, c.effects, c.rules, c.told);
+  conclude(study, result);
+  return result;
 }
 
 }  // namespace hosel::loop

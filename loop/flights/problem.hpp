@@ -51,7 +51,6 @@ class FlightProblem final : public Problem {
   StructureMap structure(const Fit& fit, const Fit& near, const Eigen::MatrixXd& directions,
                          const Rules& rules) const override;
   std::vector<Location> places(const Selection& selection) const override { return plainest_places(*this, selection); }
-  std::vector<Location> shapes(const Selection&) const override { return {}; }
   std::vector<Location> doubts(const Selection& selection) const override;
   NextExperiment next_experiment(const LoopResult& so_far) const override;
 
@@ -113,5 +112,8 @@ class FlightProblem final : public Problem {
   std::vector<Regressor> regressors_;
   bool updated_ = false;
 };
+
+/// Throws DataError where nothing can be compared.
+LoopResult run(const FlightCase& c);
 
 }  // namespace hosel::loop

@@ -84,7 +84,7 @@ Colour colour(const HistoryProblem& problem, const Eigen::MatrixXd& residuals, i
         const std::size_t size = std::bit_ceil(run.size());
         const std::vector<double> I = periodogram(run, weight);
         for (std::size_t k = 0; k < I.size(); ++k) {
-          power.push_back(std::max(I[k], 1e-300));
+          power.push_back(std::max(I[k], kTiny));
           angle.push_back(2 * kPi * double(k + 1) / double(size));
         }
       }

@@ -52,9 +52,6 @@ class HistoryProblem final : public Problem {
   StructureMap structure(const Fit& fit, const Fit& near, const Eigen::MatrixXd& directions,
                          const Rules& rules) const override;
   std::vector<Location> places(const Selection& selection) const override;
-  std::vector<Location> shapes(const Selection&) const override { return {}; }
-  /// None: readings that stand alone are few, and a record that is missed has structure.
-  std::vector<Location> doubts(const Selection&) const override { return {}; }
   NextExperiment next_experiment(const LoopResult& so_far) const override;
 
  private:

@@ -22,8 +22,6 @@ struct Term {
   char how = ' ';  ///< ' ', '/', '*'
 };
 
-constexpr double kRoundOff = 1e-9;  // of a column's spread
-
 struct Source {
   const Column* column;
   Eigen::VectorXd x;  ///< SI, so that no formula hangs on a unit; NaN where missing
@@ -74,11 +72,7 @@ struct Formula {
 
 bool same_relation(int target, const Formula& f, int other, const Formula& g) {
   if (target == other) return true;
-  const auto columns = [](std::set<int> from, int y) {
-    from.insert(y);
-    return from;
-  };
-  return f.form == g.form && f.form != Formula::Form::other && columns(f.from, target) == columns(g.from, other);
+  return f.form == g.form && f.form != Formula::Form::other && set_with(f.from, target) == set_with(g.from, other);
 }
 
 /// What monitors and players compute from two columns, SI.
@@ -152,7 +146,7 @@ class Audit {
       if (different.size() < 4) continue;
       s.spread = at_share(seen, 0.9) - at_share(seen, 0.1);
       if (!(s.spread > 0)) continue;
-      s.fine = different.size() >= 8;
+      s.fine = different.size() >= kFewestDifferent;
       sources_.push_back(std::move(s));
     }
   }
@@ -512,9 +506,9 @@ class Audit {
     std::vector<const Term*> kept;
     std::set<int> everything;
     for (const Term& f : all) everything.insert(f.a);
-    constexpr std::size_t most = 400;
-    const std::vector<Eigen::Index> rows = evenly(complete(target, everything), most);  // in the order of their values
-    if (rows.size() < 25) return {};  // missing cells: only plain columns are tried
+    const std::vector<Eigen::Index> rows =
+        evenly(complete(target, everything), kRowsAsked);  // in the order of their values
+    if (rows.size() < 25) return {};                       // missing cells: only plain columns are tried
     const auto n = std::ptrdiff_t(rows.size());
     const auto ranks = [&](auto&& value) {
       Eigen::VectorXd v(n);
@@ -522,7 +516,7 @@ class Audit {
       const auto [lo, hi] = bulk({v.data(), v.data() + n});
       v = v.cwiseMax(lo).cwiseMin(hi);  // bad rows drawn in
       v.array() -= v.mean();
-      return Eigen::VectorXd(v / std::max(v.norm(), 1e-300));
+      return Eigen::VectorXd(v / std::max(v.norm(), kTiny));
     };
     for (const Term& f : all) {
       const Eigen::VectorXd v = ranks([&](Eigen::Index i) { return evaluate(f, sources_, i); });

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -22,6 +23,14 @@ struct DerivedColumn {
 /// On all rows; `residual` [SI].
 DerivedColumn derived_column(const Column& y, std::vector<std::string> from, std::string formula, double residual);
 
+/// An evenly spread sample of so many rows shows a function.
+inline constexpr std::size_t kRowsAsked = 400;
+/// Some columns and one more.
+std::set<int> set_with(const auto& columns, int more) {
+  std::set<int> all(columns.begin(), columns.end());
+  all.insert(more);
+  return all;
+}
 /// What an instrument is likely to compute: unknown columns, inputs (the loft before the others), spin, the rest.
 int rank_if_computed(const Column& c);
 

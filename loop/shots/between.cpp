@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "golf/dense.hpp"
-#include "loop/deviation.hpp"
+#include "loop/rules.hpp"
 #include "loop/shots/way.hpp"
 
 namespace hosel::loop {
@@ -176,9 +176,8 @@ std::vector<GroupSpread> between_groups(const ShotModel& model, const Shots& sho
   const auto n = Eigen::Index(rows.size()), width = Eigen::Index(model.width());
   std::vector<Grouping> groupings = by_columns(shots, row_of, rows, by);
   if (session) {
-    std::vector<int> in_order(rows.size()), stretch(rows.size());
-    for (std::size_t i = 0; i < rows.size(); ++i) in_order[i] = int(i);
-    std::ranges::stable_sort(in_order, {}, [&](int i) { return model.trial(rows[std::size_t(i)]).order; });
+    std::vector<int> stretch(rows.size());
+    const auto in_order = rising_order(rows.size(), [&](int i) { return model.trial(rows[std::size_t(i)]).order; });
     const int stretches = std::max(1, int(rows.size()) / kStretch);
     for (std::size_t i = 0; i < rows.size(); ++i)
       stretch[std::size_t(in_order[i])] = int(i * std::size_t(stretches) / rows.size());
@@ -219,7 +218,6 @@ std::vector<GroupSpread> between_groups(const ShotModel& model, const Shots& sho
 std::optional<Clustered> clustered(const ShotModel& model, const Shots& shots, const std::vector<int>& row_of,
                                    const std::vector<int>& rows, const std::string& by, const Fit& base,
                                    const Fit& fit) {
-  constexpr double by_chance = 0.01;
   constexpr int passes = 30;
   const auto n = Eigen::Index(rows.size()), width = Eigen::Index(model.width());
   const Eigen::VectorXd z = model.whitened(rows, fit.model, fit.p), of_base = model.whitened(rows, base.model, base.p);
@@ -229,7 +227,7 @@ std::optional<Clustered> clustered(const ShotModel& model, const Shots& shots, c
   for (Eigen::Index i = 0; i < n; ++i)
     for (Eigen::Index c = 0; c < width; ++c) seen(c, i) = model.observed(rows[std::size_t(i)], int(c)) ? 1 : 0;
   std::optional<Clustered> out;
-  double likeliest = by_chance;
+  double likeliest = Rules{}.gate;
   for (const Grouping& g : by_columns(shots, row_of, rows, by)) {
     SharedErrors shared(g, w, seen);
     // From all that groups differ in to what the effects leave of it.
@@ -244,9 +242,7 @@ std::optional<Clustered> clustered(const ShotModel& model, const Shots& shots, c
     }
     if (!(shared.p < likeliest)) continue;
     likeliest = shared.p;
-    Eigen::VectorXd size = step;
-    Eigen::Index k = 0;
-    for (const Parameter* q : fit.model.parameters()) size[k] += fit.p[k] / q->scale, ++k;
+    const Eigen::VectorXd size = step + fit.p.cwiseQuotient(scales(fit.model));
     const Eigen::Index effects = size.size() - base.size();
     const dense::Ldlt of_effects(Eigen::MatrixXd(covariance.bottomRightCorner(effects, effects)));
     out = Clustered{g.along, size.tail(effects).dot(of_effects.solve(Eigen::VectorXd(size.tail(effects))))};

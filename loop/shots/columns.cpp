@@ -18,6 +18,7 @@
 #include "loop/shots/contact_changes.hpp"
 #include "loop/shots/inputs.hpp"
 #include "loop/shots/scatter.hpp"
+#include "loop/shots/way.hpp"
 
 namespace hosel::loop {
 namespace {
@@ -25,7 +26,6 @@ namespace {
 constexpr std::size_t kMostRows = 240;
 constexpr double kSure = 30;        // least fall of the deviance,
 constexpr double kShare = 0.15;     // and share of it
-constexpr double kFaint = 1e-12;    // norm of whitened derivatives: nothing moves
 constexpr double kPartOfRows = 15;  // price of one of some forty parts
 constexpr double kNoBlow = 1e3;     // noise units of a value that no blow can have
 constexpr double kClean = 1.7;      // deviance per value that a slip of free size may leave
@@ -43,9 +43,9 @@ Dimension dimension(const Column& c) {
   return quantity(*output_of(c.stem)).dimension;
 }
 
-bool same_unit(double a, double b) { return std::abs(a / b - 1) < 1e-9; }
+bool same_unit(double a, double b) { return std::abs(a / b - 1) < kRoundOff; }
 
-/// Units that launch monitors and people write, beside those that the project reads.
+/// Returns the project's units of a dimension, and others that launch monitors and people write.
 std::vector<Unit> likely_units(Dimension d) {
   std::vector<Unit> all;
   for (const Unit& u : units())
@@ -491,13 +491,12 @@ bool spread_over(const Eigen::MatrixXd& z, const Eigen::MatrixXd& j, const std::
 
 }  // namespace
 
-/// From some shot on, and where a column of text has a value that a quarter of the rows have, and not three.
+/// Parts are the shots from some shot on, and the rows with one value of a text column, if these are between a quarter
+/// and three quarters of all.
 std::vector<Columns::PartOfRows> Columns::parts() const {
   const Eigen::Index n = values_.rows();
   std::vector<PartOfRows> parts;
-  std::vector<Eigen::Index> by_order(static_cast<std::size_t>(n));
-  std::iota(by_order.begin(), by_order.end(), Eigen::Index(0));
-  std::ranges::stable_sort(by_order, {}, [&](Eigen::Index i) { return order_[std::size_t(i)]; });
+  const auto by_order = rising_order<Eigen::Index>(order_.size(), [&](auto i) { return order_[std::size_t(i)]; });
   for (Eigen::Index k = n / 6; n >= kFewestRows && k <= n - n / 6; k += std::max<Eigen::Index>(1, n / 60)) {
     std::vector<char> member(static_cast<std::size_t>(n), 0);
     for (Eigen::Index i = k; i < n; ++i) member[std::size_t(by_order[std::size_t(i)])] = 1;
@@ -545,7 +544,7 @@ std::map<std::string, double> Columns::by_contact(const Eigen::MatrixXd& z, cons
   const auto moving = [&](std::span<const ContactChange> of) {
     std::vector<Change> changes;
     for (const ContactChange& c : of)
-      if (Eigen::MatrixXd by = sensitivity(c.form) * W.transpose(); !(by.norm() < kFaint))
+      if (Eigen::MatrixXd by = sensitivity(c.form) * W.transpose(); !(by.norm() < kNoMotion))
         changes.push_back({std::move(by), c.largest});
     return changes;
   };
@@ -561,7 +560,8 @@ std::map<std::string, double> Columns::by_contact(const Eigen::MatrixXd& z, cons
       if (std::abs(size) > c.largest) continue;
       rival(side.where, value);
       const Eigen::MatrixXd off_centre = square.asDiagonal() * even, beside = z + size * even;
-      if (off_centre.norm() > kFaint) rival(side.where, fitted(beside, off_centre).second + case_.rules.parameter_cost);
+      if (off_centre.norm() > kNoMotion)
+        rival(side.where, fitted(beside, off_centre).second + case_.rules.parameter_cost);
       left = beside;
     }
   };
@@ -578,7 +578,7 @@ void Columns::try_sizes(const std::vector<PartOfRows>& parts) {
   std::vector<Slip> trials;
   for (int k = 0; k < int(columns_.size()); ++k) {
     const Eigen::MatrixXd J = sensitivity(values_, k) * W.transpose();
-    if (J.norm() < kFaint) continue;
+    if (J.norm() < kNoMotion) continue;
     const auto consider = [&](Slip slip, const Eigen::MatrixXd& j) {
       const auto [t, value] = fitted(z, j);
       (slip.finding == "scale" ? slip.factor : slip.offset) += t;

@@ -15,7 +15,6 @@ namespace hosel::loop {
 namespace {
 
 constexpr std::size_t kKnots = 150;  // rows whose covariance makes a basis
-constexpr double kPrice = 8;         // beside names, which are chosen among some seventy forms [units of deviance]
 
 /// Functions of one quantity: each a basis over the rows with the variance of its coefficients, a level apart. The
 /// basis is orthonormal over the knots.
@@ -43,7 +42,7 @@ Field::Basis basis(const Eigen::MatrixXd& covariance, const std::vector<int>& kn
       std::clamp<Eigen::Index>((all.values.array() > 1e-6 * all.values.maxCoeff()).count(), 1, most);
   const Eigen::VectorXd values = all.values.tail(terms).cwiseMax(0);
   Field::Basis b{centred * all.vectors.rightCols(terms), values};
-  for (Eigen::Index k = 0; k < terms; ++k) b.phi.col(k) /= std::max(values[k], 1e-300);
+  for (Eigen::Index k = 0; k < terms; ++k) b.phi.col(k) /= std::max(values[k], kTiny);
   const double whole = b.variance.sum() / double(knots.size());
   if (whole > 0) b.variance /= whole;
   return b;
@@ -236,9 +235,7 @@ Eigen::MatrixXd by_noise(const Eigen::MatrixXd& z, const std::vector<Eigen::Matr
 }
 
 bool monotone(const Eigen::VectorXd& g, const std::vector<double>& order) {
-  std::vector<std::size_t> by(order.size());
-  for (std::size_t i = 0; i < by.size(); ++i) by[i] = i;
-  std::ranges::sort(by, {}, [&](std::size_t i) { return order[i]; });
+  const auto by = rising_order<std::size_t>(order.size(), [&](std::size_t i) { return order[i]; });
   double way = 0, path = 0;
   for (std::size_t i = 1; i < by.size(); ++i) {
     const double d = g[Eigen::Index(by[i])] - g[Eigen::Index(by[i - 1])];
@@ -276,7 +273,7 @@ std::vector<std::string> names_of(const Way& way, const Field& field, const Shot
 
 std::vector<Mechanism> mechanisms(const ShotModel& model, const Shots& shots, const std::vector<int>& row_of,
                                   const std::vector<int>& rows, bool session, const std::set<std::string>& noisy,
-                                  const Fit& base, const Fit& chosen, double tie) {
+                                  const Fit& base, const Fit& chosen, const Rules& rules) {
   const auto n = Eigen::Index(rows.size()), width = Eigen::Index(model.width());
   if (n < kFewestRows) return {};
   const solvers::Loss loss = loss_of_shot(model.width());
@@ -336,7 +333,7 @@ std::vector<Mechanism> mechanisms(const ShotModel& model, const Shots& shots, co
       if (std::isfinite(trial.found.fall)) trials.push_back(std::move(trial));
   // Of the choice, beside nothing: each function through each mechanism is as likely as any other before the data are
   // seen.
-  const double price = alone ? 2 * std::log(double(std::max<std::size_t>(trials.size(), 1))) : kPrice;
+  const double price = alone ? 2 * std::log(double(std::max<std::size_t>(trials.size(), 1))) : 2 * rules.parameter_cost;
   std::ranges::stable_sort(trials, std::ranges::greater{}, [](const Trial& t) { return t.found.fall; });
   if (trials.size() > 12) trials.resize(12);
 
@@ -361,7 +358,7 @@ std::vector<Mechanism> mechanisms(const ShotModel& model, const Shots& shots, co
   }
   std::ranges::stable_sort(out, {}, &Mechanism::criterion);
   if (out.empty()) return {};
-  const double within = out.front().criterion + tie;
+  const double within = out.front().criterion + rules.tie;
   std::erase_if(out, [&](const Mechanism& m) { return m.criterion > within; });
   return out;
 }

@@ -15,9 +15,9 @@ namespace hosel::loop {
 /// place of impact, a value for each group of a text column. Made linear about `base`, on `rows`, with the weights of
 /// the shots in `chosen`. `session`: the place in the session is a time. `noisy`: the inputs whose noise is declared;
 /// where nothing is chosen, what noise of the others does in the mean is no function's. The likeliest first, those
-/// within `tie` of it.
+/// within `rules.tie` of it.
 std::vector<Mechanism> mechanisms(const ShotModel& model, const Shots& shots, const std::vector<int>& row_of,
                                   const std::vector<int>& rows, bool session, const std::set<std::string>& noisy,
-                                  const Fit& base, const Fit& chosen, double tie);
+                                  const Fit& base, const Fit& chosen, const Rules& rules);
 
 }  // namespace hosel::loop

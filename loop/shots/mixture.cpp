@@ -5,14 +5,13 @@
 #include <numbers>
 
 #include "golf/dense.hpp"
-#include "loop/deviation.hpp"
+#include "loop/rules.hpp"
 
 namespace hosel::loop {
 namespace {
 
 constexpr double kLeastShare = 0.125, kLeastApart = 2.4;
 constexpr Eigen::Index kFewestToPart = 16;  // rows
-constexpr double kNoScatter = 1e-9;
 
 double log_normal(double u, double s) { return -0.5 * u * u / (s * s) - std::log(s) - kLogRootTwoPi; }
 
@@ -53,7 +52,7 @@ Mixture two_populations(const Eigen::VectorXd& y) {
       b = (second * y.array()).sum() / second.sum();
       a = ((1 - second) * y.array()).sum() / (1 - second).sum();
       s = std::sqrt((second * (y.array() - b).square() + (1 - second) * (y.array() - a).square()).mean());
-      if (!(s > kNoScatter)) break;
+      if (!(s > kRoundOff)) break;
       sum = 0;
       for (Eigen::Index i = 0; i < n; ++i) {
         const double one = std::log(1 - share) + log_normal(y[i] - a, s),
@@ -63,7 +62,7 @@ Mixture two_populations(const Eigen::VectorXd& y) {
         sum += both;
       }
     }
-    if (!(share * double(n) >= 2 && (1 - share) * double(n) >= 2 && s > kNoScatter) || sum <= best.gain) continue;
+    if (!(share * double(n) >= 2 && (1 - share) * double(n) >= 2 && s > kRoundOff) || sum <= best.gain) continue;
     best = {.gain = sum, .share = share, .apart = (b - a) / s, .deviation = s, .second = {}};
     for (const double p : second) best.second.push_back(p > 0.5);
   }
@@ -99,7 +98,7 @@ double one_population(const Eigen::MatrixXd& z) {
 
 std::optional<Mixture> mixture(const Eigen::MatrixXd& first, const Residuals& second, const Eigen::VectorXd& start,
                                const Eigen::VectorXd& low, const Eigen::VectorXd& high, double one) {
-  constexpr double step = 0.01, cost = 4, told = 0.05, untold_share = 1.0 / 7;
+  constexpr double step = 0.01, untold_share = 1.0 / 7;
   constexpr int passes = 15;
   const Eigen::Index n = first.rows(), m = first.cols(), size = start.size();
   if (n < kFewestToPart) return {};
@@ -137,7 +136,7 @@ std::optional<Mixture> mixture(const Eigen::MatrixXd& first, const Residuals& se
     scatter = (((z.array().square().colwise() * in) + (first.array().square().colwise() * (1 - in))).colwise().mean())
                   .sqrt()
                   .transpose();
-    if (!(scatter.minCoeff() > kNoScatter)) return {};
+    if (!(scatter.minCoeff() > kRoundOff)) return {};
     log_likelihood = -0.5 * double(n * m) * std::log(2 * std::numbers::pi) - double(n) * scatter.log().sum();
     const auto distance = [&](const Eigen::MatrixXd& a) -> Eigen::ArrayXd {
       return (a.array().rowwise() / scatter.transpose()).square().rowwise().sum();
@@ -148,12 +147,12 @@ std::optional<Mixture> mixture(const Eigen::MatrixXd& first, const Residuals& se
     in = (b - both).exp();
     log_likelihood += both.sum();
   }
-  if (double((in > told && in < 1 - told).count()) > untold_share * double(n)) return {};
+  if (double((in > kTold && in < 1 - kTold).count()) > untold_share * double(n)) return {};
   const Eigen::MatrixXd apart = (z - first).array().rowwise() / scatter.transpose();
   out.apart = std::sqrt(apart.squaredNorm() / double(n));
   if (out.apart < kLeastApart) return {};
   out.deviation = std::sqrt(scatter.square().mean());
-  out.gain = 2 * (log_likelihood - one) - cost * double(size);
+  out.gain = 2 * (log_likelihood - one) - Rules{}.parameter_cost * double(size);
   for (const double x : in) out.second.push_back(x > 0.5);
   return out;
 }

@@ -20,8 +20,7 @@ constexpr std::size_t kLeastRows = 40;
 constexpr std::ptrdiff_t kRowsFitted = 5;     // rows for every coefficient,
 constexpr std::ptrdiff_t kRowsPerNumber = 7;  // of those that a function holds on: fewer agree by chance,
 constexpr std::ptrdiff_t kRowsIfPlain = 3;    // and fewer to far less than the noise
-constexpr double kLeastShare = 0.25;          // some rows of very many agree with one of so many functions
-constexpr std::size_t kRowsAsked = 400;       // an evenly spread sample shows a function
+constexpr double kLeastOfRows = 0.25;         // some rows of very many agree with one of so many functions
 constexpr std::size_t kMostColumns = 4;
 constexpr double kBadRows = 0.1;        // so many may depart from what holds on all rows
 constexpr double kLessThanNoise = 0.2;  // of the declared noise: less scatter is none that was declared too large
@@ -43,11 +42,7 @@ struct Smooth {
   double gain = 0;        ///< the same beyond a plane through all columns, less what the free numbers cost
   bool plain = false;     ///< it scatters far less than noise
 
-  std::set<int> columns() const {
-    std::set<int> all(from.begin(), from.end());
-    all.insert(of);
-    return all;
-  }
+  std::set<int> columns() const { return set_with(from, of); }
 };
 
 class Predictable {
@@ -98,8 +93,8 @@ class Predictable {
     const double chance = std::log(double(tried_));
     const auto shown = [&](const Smooth& f) {
       const bool enough = f.weight.sum() >= double((f.plain ? kRowsIfPlain : kRowsPerNumber) * f.coefficients.size());
-      return f.gain > chance && f.evidence > kBeyondChance + chance && enough && f.share > kLeastShare ? f.gain
-                                                                                                       : -kInfinity;
+      return f.gain > chance && f.evidence > kBeyondChance + chance && enough && f.share > kLeastOfRows ? f.gain
+                                                                                                        : -kInfinity;
     };
     const auto found = std::ranges::max_element(all, {}, shown);
     if (found == all.end() || !std::isfinite(shown(*found))) return {};

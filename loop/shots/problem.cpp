@@ -24,7 +24,6 @@ namespace {
 constexpr std::size_t kFewestToTest = 4;    // training rows that can test anything
 constexpr std::size_t kMostToSelect = 450;  // what names an effect does not need thousands, whose cost would be felt
 constexpr double kMixture = 20;             // least gain of two populations over one
-constexpr double kKnownMixture = 11;        // the same where their scatter is the declared noise
 
 }  // namespace
 
@@ -268,8 +267,8 @@ Problem::Density ShotProblem::density(Part part) const {
 }
 
 /// Both halves by every input that varies; the session in quarters, where a ramp, a jump and a swing part.
-std::vector<std::vector<bool>> ShotProblem::subsets(Part part) const {
-  const std::vector<int>& rows = shots(part);
+std::vector<std::vector<bool>> ShotProblem::subsets() const {
+  const std::vector<int>& rows = rows_.train;
   std::vector<std::vector<bool>> all;
   const auto divide = [&](const auto& value, int pieces) {
     std::vector<double> x, sorted;
@@ -406,7 +405,7 @@ std::vector<Mechanism> ShotProblem::mechanisms(const Selection& s, const Rules& 
   std::set<std::string> noisy;
   for (const auto& [column, sd] : case_.input_noise)
     if (sd > 0) noisy.insert(column);
-  return loop::mechanisms(*model_, case_.shots, inputs_.row_of, rows, in_session(), noisy, s.base, s.chosen, rules.tie);
+  return loop::mechanisms(*model_, case_.shots, inputs_.row_of, rows, in_session(), noisy, s.base, s.chosen, rules);
 }
 
 std::vector<Attenuation> ShotProblem::attenuations(const Fit& fit) const {
@@ -515,7 +514,7 @@ std::optional<Location> ShotProblem::two_populations(const Selection& s) const {
     if (z == &base && s.clean && !as_declared(*two)) continue;
     best = std::move(two);
   }
-  if (best && best->gain < (as_declared(*best) ? kKnownMixture : kMixture)) best.reset();
+  if (best && best->gain < (as_declared(*best) ? case_.rules.gain / 2 : kMixture)) best.reset();
   // The same, where the second population has an effect that does not move every shot alike.
   if (!best && (doubtful || (s.level > 0 && !declared))) {
     const double one = std::max(one_population(chosen), one_population(base));

@@ -53,7 +53,7 @@ class ShotProblem : public Problem {
     return model_->residuals(model, p.data());
   }
   Density density(Part part) const override;
-  std::vector<std::vector<bool>> subsets(Part part) const override;
+  std::vector<std::vector<bool>> subsets() const override;
   std::vector<Stage> stages() const override { return stages_of_shots(width()); }
 
   bool screen(const Selection& selection) override;

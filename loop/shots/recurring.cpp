@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kLevel = kByChance / 10;  // for each column
 
-/// Rows with the number of the row before, where another result differs.
+/// Rows with the number of the row `lag` before, if another result differs.
 std::vector<int> repeats(const Shots& shots, const Column& c, std::size_t lag, double& pairs) {
   std::vector<int> same;
   for (std::size_t i = lag; i < shots.rows(); ++i) {
@@ -49,12 +49,11 @@ std::vector<int> of_the_row_before(const Shots& shots, const Column& c, double& 
 /// is told by the other numbers. It must have twice the rows of the next, since rounded numbers may stand among others
 /// that are not.
 std::vector<int> one_number(const Column& c, double& next) {
-  constexpr std::size_t fewest = 20;  // different numbers
   constexpr double peaked = 2.5;  // densest over mean density: 1.4 where the numbers are normal, 2 where exponential
   std::map<double, std::vector<int>> rows;
   for (std::size_t i = 0; i < c.value.size(); ++i)
     if (std::isfinite(c.value[i])) rows[c.value[i]].push_back(int(i));
-  if (rows.size() < fewest) return {};
+  if (rows.size() < kFewestToLearn) return {};
   std::vector<const std::vector<int>*> by_size;
   for (const auto& [number, of] : rows) by_size.push_back(&of);
   std::ranges::stable_sort(by_size, std::ranges::greater{}, [](const auto* of) { return of->size(); });

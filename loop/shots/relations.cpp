@@ -17,7 +17,7 @@ namespace hosel::loop {
 namespace {
 
 constexpr double kLeastHeld = 0.35;  // of the rows
-constexpr std::size_t kFewestRelated = 20, kMostRelated = 300;
+constexpr std::size_t kMostRelated = 300;
 
 struct RelationSource {
   const Column* column;
@@ -36,11 +36,7 @@ struct Relation {
   int rows = 0, held = 0;
   double evidence = 0;  ///< log-likelihood beyond that of scatter alone
   double score() const { return held - 3.0 * double(from.size()); }
-  std::set<int> columns() const {
-    std::set<int> all(from.begin(), from.end());
-    all.insert(target);
-    return all;
-  }
+  std::set<int> columns() const { return set_with(from, target); }
 };
 
 double up(const Vec3& v) { return std::asin(v.z() / v.norm()); }
@@ -115,7 +111,7 @@ class Relations {
         s.x.push_back(c.value[row]);
         if (std::isfinite(s.x.back())) seen.push_back(s.x.back());
       }
-      if (seen.size() < kFewestRelated || seen.size() * 2 < rows.size()) continue;
+      if (seen.size() < kFewestToLearn || seen.size() * 2 < rows.size()) continue;
       std::ranges::sort(seen);
       const auto at = [&](double q) { return at_share(seen, q); };
       s.spread = at(0.9) - at(0.1);
@@ -170,11 +166,11 @@ class Relations {
   /// A number and the header that it multiplies, as they stand in the units of the headers: none where it is one.
   std::string times(double number, int k, int y) const {
     number *= si(k) / si(y);
-    return std::abs(number - 1) < 1e-9 ? header(k) : fmt::format("{:.5g} * {}", number, header(k));
+    return std::abs(number - 1) < kRoundOff ? header(k) : fmt::format("{:.5g} * {}", number, header(k));
   }
   std::string plus(double number, int k, int y) const {
     number *= si(k) / si(y);
-    if (std::abs(std::abs(number) - 1) < 1e-9) return fmt::format("{} {}", number < 0 ? '-' : '+', header(k));
+    if (std::abs(std::abs(number) - 1) < kRoundOff) return fmt::format("{} {}", number < 0 ? '-' : '+', header(k));
     return fmt::format("{:+.5g} * {}", number, header(k));
   }
 
@@ -186,10 +182,10 @@ class Relations {
   /// zeros where nothing was read) count once.
   void judge(int y, const std::vector<int>& from, const std::string& text, const std::vector<Residual>& residual) {
     ++tried_;
-    const double t = half_step(y) * 1.02 + 1e-9 * source(y).spread;
+    const double t = half_step(y) * 1.02 + kRoundOff * source(y).spread;
     const auto within = [&](const Residual& r) { return std::abs(r.value) <= t; };
     const int rows = int(std::ranges::count_if(residual, within));
-    if (residual.size() < kFewestRelated || rows < kLeastHeld * double(residual.size())) return;
+    if (residual.size() < kFewestToLearn || rows < kLeastHeld * double(residual.size())) return;
     std::set<std::vector<double>> seen;
     std::set<double> values;
     std::vector<double> distinct;
@@ -203,7 +199,7 @@ class Relations {
       for (const int k : from) key.push_back(x(k, r.row));
       if (seen.insert(std::move(key)).second) distinct.push_back(r.value);
     }
-    if (values.size() < 8 || distinct.size() < kFewestRelated) return;
+    if (values.size() < kFewestDifferent || distinct.size() < kFewestToLearn) return;
     const double evidence = edge_evidence(distinct, t);
     if (evidence > kBeyondChance)
       found_.push_back({y, from, text, std::sqrt(square / rows), int(residual.size()), rows, evidence});
@@ -226,7 +222,7 @@ class Relations {
       ends.emplace_back(a / b - t / std::abs(b), 1);
       ends.emplace_back(a / b + t / std::abs(b), -1);
     }
-    if (parts.size() < kFewestRelated) return;
+    if (parts.size() < kFewestToLearn) return;
     double k = known.value_or(0);
     if (!known) {
       std::ranges::sort(ends, {}, &End::first);
@@ -302,7 +298,7 @@ class Relations {
     std::vector<std::size_t> good;
     for (std::size_t i = 0; i < rows(); ++i)
       if (std::isfinite(miss(i, 0.8))) good.push_back(i);
-    if (good.size() < kFewestRelated) return;
+    if (good.size() < kFewestToLearn) return;
     double k = 1;
     if (free) {
       std::vector<End> ends;

@@ -13,9 +13,9 @@
 namespace hosel::loop {
 namespace {
 
-constexpr std::size_t kFewestForRemainder = 20, kMostForRemainder = 5000;  // rows
-constexpr std::size_t kMostPoints = 300;  // of a process, whose search for lengths takes a factor a step
-constexpr int kParts = 5;                 // of the rows, each foretold by the others
+constexpr std::size_t kMostForRemainder = 5000;  // rows
+constexpr std::size_t kMostPoints = 300;         // of a process, whose search for lengths takes a factor a step
+constexpr int kParts = 5;                        // of the rows, each foretold by the others
 
 /// Columns that a remainder may follow, over the model's shots: standardised to some two units, inside the range of
 /// `rows`.
@@ -78,7 +78,7 @@ OfChannel of_channel(const ShotModel& model, int c, const std::vector<int>& rows
       seen.push_back(i);
       r.push_back(residual[i]);
     }
-  if (seen.size() < kFewestForRemainder) return {};
+  if (seen.size() < kFewestToLearn) return {};
   const auto [middle, scale] = robust_moments(r);
   if (!(scale > 0)) return {};
   const auto n = std::ptrdiff_t(seen.size());
@@ -93,7 +93,7 @@ OfChannel of_channel(const ShotModel& model, int c, const std::vector<int>& rows
     std::vector<std::ptrdiff_t> in_part, outside;
     for (std::ptrdiff_t i = 0; i < n; ++i)
       (part[std::size_t(seen[std::size_t(i)])] == k ? in_part : outside).push_back(i);
-    if (in_part.empty() || outside.size() < kFewestForRemainder / 2) return {};
+    if (in_part.empty() || outside.size() < kFewestToLearn / 2) return {};
     const Eigen::MatrixXd from = x(outside, Eigen::all), of = y(outside, Eigen::all);
     const solvers::Kriging process = process_of(from, of);
     for (const std::ptrdiff_t i : in_part) others[i] = process(x.row(i).transpose())[0];
@@ -144,7 +144,7 @@ std::optional<Remainder> remainder(const ShotModel& model, const Shots& shots, c
     const auto known = part_of.try_emplace(group[std::size_t(i)], int(part_of.size()) % kParts).first;
     part[std::size_t(i)] = known->second;
   }
-  if (rows.size() < kFewestForRemainder || part_of.size() < kParts) return {};
+  if (rows.size() < kFewestToLearn || part_of.size() < kParts) return {};
   const RemainderInputs in(columns_of(shots, row_of, model), shots, rows);
   if (in.name.empty()) return {};
   const Eigen::MatrixXd residuals = model.residuals(fit.model, fit.p.data());

@@ -141,7 +141,7 @@ void leave_one_out(const ShotCase& c, const Columns& columns, const std::vector<
   whole.holdout = int(pooled.size());
   whole.rows = std::move(pooled);
   const bool named = whole.verdict == Verdict::explained || whole.verdict == Verdict::ambiguous;
-  if (!named || !fails_held_out(whole, c.rules.holdout_loss)) return;
+  if (!named || !fails_held_out(whole, c.rules.parameter_cost)) return;
   whole.notes.push_back(fmt::format("{} explained all rows and not those that were left out in turn: not adopted",
                                     fmt::join(whole.selection.chosen.model.effects(c.effects.size()), " and ")));
   whole.verdict = Verdict::insufficient;

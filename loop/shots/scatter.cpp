@@ -19,7 +19,7 @@ double smooth_scatter(const ShotModel& model, const std::vector<int>& rows, int 
   const auto add = [&](Eigen::VectorXd x) {
     if (std::ptrdiff_t(basis.size()) * 3 >= n) return;
     x.array() -= x.mean();
-    if (x.norm() < 1e-9) return;
+    if (x.norm() < kRoundOff) return;
     basis.push_back(x / x.norm());
   };
   for (const int power : {1, 2})

@@ -265,7 +265,7 @@ Screening screen(const ShotModel& model, const Shots& shots, const std::vector<i
     const Row row(model, fit, i);
     const boost::math::chi_squared law(seen);
     const double distance = row.distance();
-    const double surely = bulk * quantile(complement(law, 0.002 / std::max(20, n))),
+    const double surely = bulk * quantile(complement(law, 2 * kByChance / std::max(20, n))),
                  perhaps = bulk * quantile(complement(law, kPerhaps));
     if (distance < perhaps) continue;
 

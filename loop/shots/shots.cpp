@@ -12,6 +12,7 @@
 #include <tuple>
 
 #include "golf/units.hpp"
+#include "loop/rules.hpp"
 
 namespace hosel::loop {
 namespace {
@@ -39,7 +40,7 @@ std::size_t different(const std::vector<double>& values) {
 /// The step of a recording with so many decimals, and a coarser one that all values share (100 rpm recorded without
 /// decimals), in the values' unit.
 double shared_step(const std::vector<double>& values, double step) {
-  if (different(values) < 8) return step;
+  if (different(values) < kFewestDifferent) return step;
   for (const double factor : {100.0, 50.0, 20.0, 10.0, 5.0, 2.0}) {
     const auto off = [&](double x) {
       const double q = x / (step * factor);
@@ -50,6 +51,8 @@ double shared_step(const std::vector<double>& values, double step) {
   return step;
 }
 
+constexpr double kAstray = 0.02;  // share of the cells that may be written otherwise
+
 /// The most digits that at least 2 % of the cells with a value carry; none: there is no value.
 std::optional<int> most_digits(const std::vector<std::string>& cells, const std::vector<double>& native,
                                int (*digits_of)(const std::string&)) {
@@ -59,7 +62,7 @@ std::optional<int> most_digits(const std::vector<std::string>& cells, const std:
     if (std::isfinite(native[i])) ++count[digits_of(cells[i])], ++n;
   std::optional<int> digits;
   for (const auto& [d, k] : count)  // rising
-    if (double(k) >= std::max(1.0, 0.02 * double(n))) digits = d;
+    if (double(k) >= std::max(1.0, kAstray * double(n))) digits = d;
   return digits;
 }
 
@@ -101,10 +104,10 @@ double recorded_elsewhere(std::vector<double>& si, const Unit& unit, double step
   std::vector<double> taken;
   for (const Unit& other : units()) {
     if (other.dimension != unit.dimension) continue;
-    const double astray = other.suffix == unit.suffix ? 0 : 0.02;  // share of the values that may lie beside the steps
+    const double astray = other.suffix == unit.suffix ? 0 : kAstray;  // share beside the steps
     for (int digits = 0; digits <= 6; ++digits) {
       const double power = std::pow(10.0, digits), coarse = other.si / power;
-      const double ratio = coarse / std::max(step * unit.si, 1e-9 * coarse);
+      const double ratio = coarse / std::max(step * unit.si, kRoundOff * coarse);
       if (ratio < kCoarser || apart * std::log2(ratio) < kBits) break;
       std::vector<double> values = si;
       std::size_t off = 0, n = 0;

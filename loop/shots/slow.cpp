@@ -22,6 +22,7 @@ namespace {
 constexpr int kRuns = 120, kRunsPerQuantity = 15;  // without effects, and for each quantity that effects change
 constexpr int kRounds = 6;                         // of asking where the decision hangs
 constexpr double kSmallDoubt = 3;                  // of deviance: an error that moves it by less decides nothing
+constexpr std::size_t kTogether = 40;              // shots that show the doubt of a fit, and that are asked for it
 constexpr double kSurprise = 2;                    // chi-squared per output up to which its error was told truly
 
 /// It sticks and knows one law of restitution: what a slow base does otherwise is smooth beside it.
@@ -103,9 +104,8 @@ constexpr int kPlaces = 8;  // of an effect's range where it is looked at
 double way(const Parameter& q) { return (q.max - q.min) / (2 * kPlaces * q.scale); }
 
 Doubt in_doubt(const ShotProblem& problem, const Fit& fit) {
-  constexpr std::size_t together = 40;
   const std::vector<int>& all = problem.training();
-  const std::vector<int> some = evenly(all, together);
+  const std::vector<int> some = evenly(all, kTogether);
   const Eigen::VectorXd z = problem.model().whitened(some, fit.model, fit.p);
   Eigen::MatrixXd covariance = Eigen::MatrixXd::Identity(z.size(), z.size());
   if (fit.size() > 0) {
@@ -212,7 +212,7 @@ LoopResult run_slow(const ShotCase& c, Learnt& learnt) {
 }
 
 void ask_further(const ShotProblem& problem, const Rules& rules, LoopResult& result) {
-  constexpr std::size_t likeliest = 4, rivals = 6, few = 8, many = 40;
+  constexpr std::size_t likeliest = 4, rivals = 6, few = 8;
   const Selection& found = result.selection;
   const auto ask = [&](const Fit& fit, std::size_t most, std::vector<Shot>& into) {
     for (const int i : evenly(problem.training(), most))
@@ -220,7 +220,7 @@ void ask_further(const ShotProblem& problem, const Rules& rules, LoopResult& res
                   std::ranges::none_of(into, [&](const Shot& other) { return same_question(s, other); }))
         into.push_back(std::move(s));
   };
-  if (in_doubt(problem, found.chosen).matters()) ask(found.chosen, many, result.decisive);
+  if (in_doubt(problem, found.chosen).matters()) ask(found.chosen, kTogether, result.decisive);
   // A rival that the surrogate makes unlikely may be likely: the base and every single effect are asked about as far
   // as its error reaches.
   struct Rival {

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numeric>
 
 #include "golf/first_contact.hpp"
+#include "loop/deviation.hpp"
 #include "solvers/random.hpp"
 
 namespace hosel::loop {
@@ -77,9 +77,7 @@ Rows split_rows(const ShotCase& c, const ShotModel& model, const std::vector<int
   } else {
     // Single rows: of every three (at one third) neighbours in obliquity one is held out, so that both sets reach
     // over the whole range.
-    std::vector<std::size_t> order(usable.size());
-    std::iota(order.begin(), order.end(), std::size_t(0));
-    std::ranges::stable_sort(order, std::ranges::greater{}, [&](std::size_t i) { return oblique[i]; });
+    const auto order = rising_order<std::size_t>(usable.size(), [&](std::size_t i) { return -oblique[i]; });
     const std::size_t outermost = order.size() < 60 ? 1 : 2;
     const std::size_t block = fraction > 0 ? whole_share(fraction) : 0;
     for (std::size_t k = 0; block && k < order.size(); k += block) {

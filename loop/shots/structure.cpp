@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <random>
 
 #include "loop/deviation.hpp"
@@ -14,8 +13,10 @@
 namespace hosel::loop {
 namespace {
 
-/// What is steady and far below the declared noise is no error of a model: so many units of the channel's noise.
-/// Scatter at the last digit refutes a declaration and is none of an instrument.
+constexpr double kAbsorbed = 0.05;  // of a regressor's norm: with less left, lines or the fit absorb it
+
+/// Returns the signal, in units of the channel's noise, below which a finding is ignored: two declared standard
+/// deviations. It is zero if no noise is declared, or if it was refuted by more than rounding.
 double least_signal(const Channel& c) {
   constexpr double of_declared = 2;  // chance reaches 3 in one of so many regressors
   if (!c.declared || (c.refuted && c.noise > 2 * rounding_deviation(c.resolution))) return 0;
@@ -54,7 +55,7 @@ bool beside(Eigen::VectorXd& x, const std::vector<const Eigen::VectorXd*>& lines
     }
     if (ll > 0) x -= (lx / ll) * l;
   }
-  return x.norm() >= 0.05 * std::sqrt(double(x.size())) && standardise(x, rows);
+  return x.norm() >= kAbsorbed * std::sqrt(double(x.size())) && standardise(x, rows);
 }
 
 /// What an instrument does to a reading y: dead band about a value, saturation beyond one, the reading of the shot
@@ -69,9 +70,7 @@ void add_responses(const ShotModel& model, const std::vector<int>& rows, const E
     const bool good = model.predict(i, Model{}, nullptr, out.data());
     for (int c = 0; c < m; ++c) y(i, c) = good ? out[std::size_t(c)] : kNaN;
   }
-  std::vector<int> by_order(static_cast<std::size_t>(n));
-  std::iota(by_order.begin(), by_order.end(), 0);
-  std::ranges::stable_sort(by_order, {}, [&](int i) { return order[i]; });
+  const std::vector<int> by_order = rising_order(std::size_t(n), [&](int i) { return order[i]; });
   for (int c = 0; c < m; ++c) {
     const std::string& name = model.channel(c).name;
     std::vector<double> sorted;
@@ -232,7 +231,7 @@ StructureMap structure(const Problem& problem, const Whitened& view, const Fit& 
     if (!(before > 0)) return;
     if (Q.cols()) a -= Q * (Q.transpose() * a);
     const double after = a.norm();
-    if (after < 0.05 * before) return;  // what was fitted absorbs this regressor
+    if (after < kAbsorbed * before) return;  // what was fitted absorbs this regressor
     Eigen::VectorXd u(n);
     double sum = 0;
     for (int i = 0; i < n; ++i) {
@@ -262,9 +261,7 @@ StructureMap structure(const Problem& problem, const Whitened& view, const Fit& 
   const std::size_t plain = scores.size();
 
   // Neighbours alike: products of standardised residuals of successive shots, in session order.
-  std::vector<int> by_order(rows.size());
-  std::iota(by_order.begin(), by_order.end(), 0);
-  std::ranges::stable_sort(by_order, {}, [&](int i) { return view.order[std::size_t(i)]; });
+  const std::vector<int> by_order = rising_order(rows.size(), [&](int i) { return view.order[std::size_t(i)]; });
   for (int c = 0; c < m && n >= kFewestRows; ++c) {
     Eigen::VectorXd u = Eigen::VectorXd::Zero(n);
     double square = 0;
@@ -290,7 +287,7 @@ StructureMap structure(const Problem& problem, const Whitened& view, const Fit& 
   Eigen::MatrixXf U(n, std::ptrdiff_t(plain)), V(n, std::ptrdiff_t(scores.size() - plain));
   for (std::size_t k = 0; k < scores.size(); ++k)
     (k < plain ? U.col(std::ptrdiff_t(k)) : V.col(std::ptrdiff_t(k - plain))) = scores[k];
-  std::mt19937_64 random(rules.seed);
+  std::mt19937_64 random(1);
   std::vector<double> largest;
   constexpr int batch = 128;
   Eigen::MatrixXf S(batch, n), P(batch, n);

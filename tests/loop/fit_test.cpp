@@ -49,8 +49,6 @@ class TwoWells final : public Problem {
   double update_noise(const Fit&, const Fit&) override { return 0; }
   StructureMap structure(const Fit&, const Fit&, const Eigen::MatrixXd&, const Rules&) const override { return {}; }
   std::vector<Location> places(const Selection&) const override { return {}; }
-  std::vector<Location> shapes(const Selection&) const override { return {}; }
-  std::vector<Location> doubts(const Selection&) const override { return {}; }
   NextExperiment next_experiment(const LoopResult&) const override { return {}; }
 
  private:

@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "loop/flights/run.hpp"
+#include "loop/flights/problem.hpp"
 
 namespace hosel::loop {
 namespace {
