@@ -129,7 +129,7 @@ TEST(SwingCase, ThePageOfIdaSaysThatItKeepsNoEnergyBalance) {
   const auto dir = fresh_directory("swing_ida");
   std::ofstream(dir / "case.toml") << kCase << "integrator = \"ida\"\n";
   std::ofstream(dir / "grip.csv") << euler_motion();
-  const Outcome o = command("run " + dir.string() + " --quiet --set motion.begin_s=0 --set motion.end_s=0.03 --out " +
+  const Outcome o = command("run " + dir.string() + " --quiet --set motion.begin_s=0 --set motion.end_s=0.06 --out " +
                             (dir / "out").string());
   ASSERT_EQ(o.status, 0) << o.text;
   const std::string page = content(dir / "out/report.html");
