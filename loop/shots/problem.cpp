@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <boost/math/distributions/binomial.hpp>
 #include <cmath>
-#include <numeric>
 
 #include "loop/deviation.hpp"
 #include "loop/rules.hpp"
@@ -588,15 +587,12 @@ ShotProblem::FarOff ShotProblem::far_off(const Selection& s) const {
     out.lost += square > loss.cap;
     out.rows += square > loss.knee;
   }
-  const int single =
-      std::accumulate(of_column.begin(), of_column.end(), 0, [](int n, auto& c) { return n + c.second; });
+  for (const auto& [column, rows] : of_column) out.single += rows;
   for (const auto& [column, rows] : of_column) {
     if (2 * rows > out.rows) out.column = column;
-    const boost::math::binomial chance(single, 1 / double(uses_.size()));  // any column as likely
-    if (!(double(uses_.size()) * cdf(complement(chance, rows - 1)) < case_.rules.gate)) continue;
-    out.alike = column;
-    out.share = fmt::format("{} of {} flagged rows contradict the others in this column, too many for single slips",
-                            rows, single);
+    const boost::math::binomial chance(out.single, 1 / double(uses_.size()));  // any column as likely
+    if (rows > out.together && double(uses_.size()) * cdf(complement(chance, rows - 1)) < case_.rules.gate)
+      out.alike = column, out.together = rows;
   }
   out.all = int(flags_.size() + used.size());
   out.many = out.rows > std::max(3.0, kMany * out.all);
@@ -637,7 +633,10 @@ std::vector<Location> ShotProblem::doubts(const Selection& s) const {
                                 "is no explanation of the set",
                                 100 * share)});
   else if (far.many && (s.level > 0 || !far.column.empty())) told.push_back({"", far.column, far.said()});
-  else if (s.level == 0 && !far.alike.empty()) told.push_back({"", far.alike, far.share});
+  else if (s.level == 0 && !far.alike.empty())
+    told.push_back({"", far.alike,
+                    fmt::format("{} of {} flagged rows contradict the others in this column, too many for single slips",
+                                far.together, far.single)});
   return told;
 }
 

@@ -91,8 +91,9 @@ class ShotProblem : public Problem {
     int rows = 0, lost = 0, all = 0;  ///< flagged one by one or far off; flagged or where the loss is flat; of so many
     bool many = false;                ///< more than exceptions are
     std::string column;               ///< in which more than half of `rows` are flagged; empty: no one
-    std::string alike;  ///< in which more of those flagged one by one are than chance brings together; empty: no one
-    std::string share;  ///< how many of them, in words
+    int single = 0;                   ///< flagged one by one
+    std::string alike;                ///< in which more of these are than chance brings together; empty: no one
+    int together = 0;                 ///< and how many
     std::string said() const;
   };
   FarOff far_off(const Selection& s) const;
