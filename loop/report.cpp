@@ -262,7 +262,7 @@ std::string beside_noise(const LoopResult& r) {
 std::string remains(const Location& l) {
   if (l.rival) return fmt::format("No effect is named: {}.", l.detail);
   if (l.regressor.empty()) return fmt::format("Something remains that no candidate explains: {}.", l.detail);
-  std::string what = fmt::format("{} against {}", l.channel, l.regressor);
+  std::string what = fmt::format("{} against {} ({})", l.channel, l.regressor, l.detail);
   if (l.channel.empty()) what = fmt::format("{}: {}", l.regressor, l.detail);
   else if (l.regressor == "constant") what = l.channel + " is off in the mean";
   return fmt::format("Structure remains that no candidate explains: {}.", what);

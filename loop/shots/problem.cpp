@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <boost/math/distributions/binomial.hpp>
 #include <cmath>
 
 #include "loop/deviation.hpp"
@@ -15,6 +14,7 @@
 #include "loop/shots/mixture.hpp"
 #include "loop/shots/remainder.hpp"
 #include "loop/shots/scatter.hpp"
+#include "loop/shots/slips.hpp"
 #include "models/reduced/face_strike.hpp"
 
 namespace hosel::loop {
@@ -569,15 +569,21 @@ std::vector<Location> ShotProblem::shapes(const Selection& s) const {
   return {};
 }
 
-ShotProblem::FarOff ShotProblem::far_off(const Selection& s) const {
-  FarOff out;
+std::vector<RowFlag> ShotProblem::single_flags() const {
   std::map<int, int> of_finding;
-  std::map<std::string, int> of_column;
   std::set<int> unasked;  // rows that were left out before anything was fitted are far from no model
   for (const RowFlag& f : early_) unasked.insert(f.row);
   for (const RowFlag& f : flags_) ++of_finding[f.finding];
+  std::vector<RowFlag> single;
   for (const RowFlag& f : flags_)
-    if (of_finding[f.finding] == 1 && !unasked.contains(f.row)) ++out.rows, ++of_column[f.column];
+    if (of_finding[f.finding] == 1 && !unasked.contains(f.row)) single.push_back(f);
+  return single;
+}
+
+ShotProblem::FarOff ShotProblem::far_off(const Selection& s) const {
+  FarOff out;
+  std::map<std::string, int> of_column;
+  for (const RowFlag& f : single_flags()) ++out.rows, ++of_column[f.column];
   out.lost = int(flags_.size());
   const std::vector<int> used = rows_.all();
   const Eigen::VectorXd z = model_->whitened(used, s.chosen.model, s.chosen.p);
@@ -587,13 +593,8 @@ ShotProblem::FarOff ShotProblem::far_off(const Selection& s) const {
     out.lost += square > loss.cap;
     out.rows += square > loss.knee;
   }
-  for (const auto& [column, rows] : of_column) out.single += rows;
-  for (const auto& [column, rows] : of_column) {
+  for (const auto& [column, rows] : of_column)
     if (2 * rows > out.rows) out.column = column;
-    const boost::math::binomial chance(out.single, 1 / double(uses_.size()));  // any column as likely
-    if (rows > out.together && double(uses_.size()) * cdf(complement(chance, rows - 1)) < case_.rules.gate)
-      out.alike = column, out.together = rows;
-  }
   out.all = int(flags_.size() + used.size());
   out.many = out.rows > std::max(3.0, kMany * out.all);
   return out;
@@ -633,10 +634,10 @@ std::vector<Location> ShotProblem::doubts(const Selection& s) const {
                                 "is no explanation of the set",
                                 100 * share)});
   else if (far.many && (s.level > 0 || !far.column.empty())) told.push_back({"", far.column, far.said()});
-  else if (s.level == 0 && !far.alike.empty())
-    told.push_back({"", far.alike,
-                    fmt::format("{} of {} flagged rows contradict the others in this column, too many for single slips",
-                                far.together, far.single)});
+  else if (s.level == 0)
+    if (const auto where =
+            no_single_slips(single_flags(), uses_, columns_of(case_.shots, inputs_.row_of, *model_), case_.rules.gate))
+      told.push_back(*where);
   return told;
 }
 

@@ -86,14 +86,12 @@ class ShotProblem : public Problem {
   }
   std::optional<Location> two_populations(const Selection& s) const;
   bool in_session() const;
+  std::vector<RowFlag> single_flags() const;
   /// Shots beyond what noise does to one in a thousand.
   struct FarOff {
     int rows = 0, lost = 0, all = 0;  ///< flagged one by one or far off; flagged or where the loss is flat; of so many
     bool many = false;                ///< more than exceptions are
     std::string column;               ///< in which more than half of `rows` are flagged; empty: no one
-    int single = 0;                   ///< flagged one by one
-    std::string alike;                ///< in which more of these are than chance brings together; empty: no one
-    int together = 0;                 ///< and how many
     std::string said() const;
   };
   FarOff far_off(const Selection& s) const;

@@ -101,6 +101,44 @@ void add_responses(const ShotModel& model, const std::vector<int>& rows, const E
   }
 }
 
+/// An input as it was on the shot before or after: what a record that is smoothed, held or shifted misses.
+void add_neighbours(const std::vector<Line>& lines, const std::vector<int>& rows, const Eigen::VectorXd& order,
+                    std::vector<Regressor>& all) {
+  const auto n = order.size();
+  const std::vector<int> by_order = rising_order(std::size_t(n), [&](int i) { return order[i]; });
+  for (const Line& l : lines) {
+    Eigen::VectorXd own = l.x;
+    if (l.foreign || !standardise(own, rows)) continue;
+    for (const int away : {-1, 1}) {
+      Eigen::VectorXd x(n);
+      for (Eigen::Index k = 0; k < n; ++k)
+        x[by_order[std::size_t(k)]] = own[by_order[std::size_t(std::clamp<Eigen::Index>(k + away, 0, n - 1))]];
+      if (beside(x, {&own}, rows))
+        all.push_back({l.name, "lag", fmt::format("value on the shot {}", away < 0 ? "before" : "after"), true, x});
+    }
+  }
+}
+
+/// Balls, clubs or players in turn: one shot of every two to eight. Such a period is too short for an oscillation.
+void add_turns(const Shots& shots, const std::vector<int>& row_of, const std::vector<int>& rows,
+               std::vector<Regressor>& all) {
+  constexpr long longest = 8;
+  const Column* shot = shots.find("shot");
+  if (!shots.has_shot_column || !shot || !shot->numeric) return;
+  const auto number = [&](Eigen::Index i) { return shot->value[std::size_t(row_of[std::size_t(i)])]; };
+  const auto n = Eigen::Index(row_of.size());
+  for (Eigen::Index i = 0; i < n; ++i)
+    if (!std::isfinite(number(i)) || number(i) != std::round(number(i)) || std::abs(number(i)) > 1e9) return;
+  for (long period = 2; period <= longest; ++period)
+    for (long turn = 0; turn < (period == 2 ? 1 : period); ++turn) {
+      Eigen::VectorXd x(n);
+      for (Eigen::Index i = 0; i < n; ++i) x[i] = ((long(number(i)) - turn) % period) == 0;
+      if (standardise(x, rows))
+        all.push_back({"shot", "turn", fmt::format("one of every {} shots, number {} among them", period, turn ? turn : period),
+                       true, x});
+    }
+}
+
 }  // namespace
 
 std::vector<Line> columns_of(const Shots& shots, const std::vector<int>& row_of, const ShotModel& model) {
@@ -133,6 +171,7 @@ std::vector<Regressor> regressors(const Shots& shots, const std::vector<int>& ro
       std::ranges::find_if(all, [](const Regressor& r) { return r.kind == "step" || r.kind == "oscillation"; });
   std::vector<Regressor> responses;
   add_responses(model, rows, order, responses);
+  if (rows.size() >= kFewestRows) add_neighbours(lines, rows, order, responses);
   all.insert(session, std::make_move_iterator(responses.begin()), std::make_move_iterator(responses.end()));
   return all;
 }
@@ -206,6 +245,7 @@ std::vector<Regressor> regressors(const Shots& shots, const std::vector<int>& ro
         if (standardise(x, rows))
           all.push_back({"shot", "oscillation", fmt::format("{:g} periods in the session", 0.5 * half), true, x});
       }
+    add_turns(shots, row_of, rows, all);
   }
   return all;
 }

@@ -13,7 +13,7 @@ namespace hosel::loop {
 
 struct Regressor {
   std::string column;     ///< header, "shot" for the order, "constant"
-  std::string kind;       ///< constant, trend, curvature, interaction, group, step, oscillation, response, lag
+  std::string kind;       ///< constant, trend, curvature, interaction, group, step, oscillation, turn, response, lag
   std::string detail;     ///< "with club_speed_mps", "= 7i", "at 8 % of the session"
   bool foreign = false;   ///< see Finding
   Eigen::VectorXd value;  ///< per shot of the model; centred, unit mean square over the rows
@@ -34,7 +34,7 @@ struct Line {
 /// Of the shots' data: inputs as a fit sees them, columns that no model knows, the place in the session last.
 std::vector<Line> columns_of(const Shots& shots, const std::vector<int>& row_of, const ShotModel& model);
 /// Regressors from such columns: trends, curvatures, products of two, groups of the text columns, steps and
-/// oscillations over the session (`order` per shot, 0 to 1).
+/// oscillations over the session (`order` per shot, 0 to 1), shots in turn.
 std::vector<Regressor> regressors(const Shots& shots, const std::vector<int>& row_of, const std::vector<int>& rows,
                                   const std::vector<Line>& lines, const Eigen::VectorXd& order);
 

@@ -20,6 +20,7 @@
 #include "loop/shots/inputs.hpp"
 #include "loop/shots/problem.hpp"
 #include "loop/shots/run.hpp"
+#include "loop/shots/slips.hpp"
 #include "loop/study.hpp"
 #include "loop/verdict.hpp"
 #include "models/reduced/face_strike.hpp"
@@ -1173,6 +1174,84 @@ TEST_F(Loop, AColumnMayBeReadInAnotherSenseOnAPartOfTheSession) {
     EXPECT_NE(r.columns[0].text.find(p.where), std::string::npos) << r.columns[0].text;
     EXPECT_EQ(name(r.verdict), "unexplained");
   }
+}
+
+/// A recorded club speed that keeps a tenth of the one before: the residual follows the speed before.
+TEST_F(Loop, ARecordThatIsSmoothedIsToldAsSuch) {
+  double shown = 45;
+  const LoopResult r = run(case_of(changed(csv({.shots = 150}), "", [&](int, std::vector<std::string>& cells) {
+    shown += 0.9 * (std::stod(cells[kClubSpeed]) - shown);
+    cells[kClubSpeed] = fmt::format("{:.4f}", shown);
+  })));
+  ASSERT_EQ(r.verdict, Verdict::unexplained) << sentence(r);
+  EXPECT_EQ(r.unexplained.front().channel, "ball_speed_mps");
+  EXPECT_EQ(r.unexplained.front().regressor, "club_speed_mps");
+  EXPECT_EQ(r.unexplained.front().detail, "lag value on the shot before");
+  EXPECT_NE(sentence(r).find("ball_speed_mps against club_speed_mps (lag value on the shot before)"), std::string::npos)
+      << sentence(r);
+}
+
+/// Rows that no model explains are single slips only where they are spread by chance.
+TEST_F(Loop, FlaggedRowsThatStandTogetherAreNoSingleSlips) {
+  const std::vector<ColumnUse> uses(12);
+  const auto told = [&](const std::vector<int>& shots, const std::vector<std::string>& columns) {
+    std::vector<RowFlag> flagged;
+    for (std::size_t k = 0; k < shots.size(); ++k)
+      flagged.push_back({.shot = shots[k], .row = shots[k], .column = columns[k % columns.size()]});
+    Eigen::VectorXd loft(200), order(200);
+    for (int i = 0; i < 200; ++i) {
+      loft[i] = (7 * i) % 200;  // the loft does not follow the order
+      order[i] = i;
+    }
+    return no_single_slips(flagged, uses, {{"dynamic_loft_deg", false, loft}, {"shot", true, order}}, Rules{}.gate);
+  };
+  const std::vector<std::string> different = {"a", "b", "c", "d", "e"};
+  EXPECT_FALSE(told({3, 51, 97, 140, 188}, different));
+  EXPECT_FALSE(told({100, 104}, different));
+  ASSERT_TRUE(told({100, 104, 109, 112, 121}, different));
+  EXPECT_EQ(told({100, 104, 109, 112, 121}, different)->regressor, "shot");
+  // At both ends of the session: an instrument that warms up and tires.
+  EXPECT_TRUE(told({1, 4, 9, 192, 197}, different));
+  // The five of the largest lofts, along the session anywhere: unless it is the loft that slipped.
+  const std::vector<int> lofty = {57, 114, 171, 28, 85};
+  ASSERT_TRUE(told(lofty, different));
+  EXPECT_EQ(told(lofty, different)->regressor, "dynamic_loft_deg");
+  EXPECT_EQ(told(lofty, {"dynamic_loft_deg"})->detail.substr(0, 6), "5 of 5");  // too many in one column
+  EXPECT_FALSE(told({57, 114, 171, 28}, {"dynamic_loft_deg", "a"}));
+
+  const auto session = [&](int first, int apart) {
+    return run(case_of(changed(csv({.shots = 220}), "", [&](int row, std::vector<std::string>& cells) {
+      const int k = (row - first) / apart;
+      if (row < first || (row - first) % apart != 0 || k >= 6) return;
+      std::string& cell = cells[std::array{kBallSpeed, kBackspin, kLoft}[std::size_t(k % 3)]];
+      cell = fmt::format("{:.2f}", std::stod(cell) + std::array{5.0, 1500.0, 9.0}[std::size_t(k % 3)]);
+    })));
+  };
+  const LoopResult spread = session(5, 37), together = session(100, 5);
+  EXPECT_EQ(spread.flagged.size(), 6U);
+  EXPECT_EQ(spread.verdict, Verdict::no_residual) << sentence(spread);
+  EXPECT_EQ(together.flagged.size(), 6U);
+  ASSERT_EQ(together.verdict, Verdict::unexplained) << sentence(together);
+  EXPECT_EQ(together.unexplained.front().regressor, "shot");
+}
+
+/// Too fast for an oscillation, too little for a second population: one ball of six that are struck in turn.
+TEST_F(Loop, OneBallOfThoseStruckInTurnIsStructureOfTheSession) {
+  const auto turns = [&](int every, double slower) {
+    return run(case_of(changed(csv({.shots = 160}), "", [&](int row, auto& cells) {
+      if (row % every == 3 % every) cells[kBallSpeed] = fmt::format("{:.2f}", std::stod(cells[kBallSpeed]) - slower);
+    })));
+  };
+  for (const int every : {2, 6}) {
+    const LoopResult r = turns(every, 0.4);
+    EXPECT_EQ(name(r.verdict), "unexplained") << every << sentence(r);
+    ASSERT_FALSE(r.unexplained.empty());
+    EXPECT_EQ(r.unexplained.front().channel, "ball_speed_mps");
+    EXPECT_EQ(r.unexplained.front().regressor, "shot");
+    EXPECT_TRUE(r.unexplained.front().detail.starts_with(fmt::format("turn one of every {} shots", every)))
+        << r.unexplained.front().detail;
+  }
+  EXPECT_EQ(name(turns(6, 0).verdict), "no-residual");
 }
 
 /// Each of two causes may have two names: that is two ties, not four sets without a name in common.
