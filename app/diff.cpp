@@ -28,6 +28,19 @@ namespace {
 
 using Leaves = std::map<std::string, std::string>;
 
+/// As a case states it: the shortest digits that are the number.
+std::string said(const toml::node& node) {
+  if (const auto* number = node.as_floating_point()) return fmt::format("{}", number->get());
+  if (const auto* list = node.as_array()) {
+    std::vector<std::string> all;
+    for (const toml::node& entry : *list) all.push_back(said(entry));
+    return fmt::format("[{}]", fmt::join(all, ", "));
+  }
+  std::ostringstream text;
+  text << toml::node_view<const toml::node>(node);
+  return text.str();
+}
+
 void leaves(const toml::node& node, const std::string& name, Leaves& out) {
   if (const auto* table = node.as_table()) {
     for (auto&& [key, value] : *table)
@@ -38,9 +51,7 @@ void leaves(const toml::node& node, const std::string& name, Leaves& out) {
     for (std::size_t i = 0; i < list->size(); ++i) leaves(*list->get(i), fmt::format("{}[{}]", name, i + 1), out);
     return;
   }
-  std::ostringstream text;
-  text << toml::node_view<const toml::node>(node);
-  out[name] = text.str();
+  out[name] = said(node);
 }
 
 struct Run {
@@ -130,6 +141,13 @@ constexpr double kNothing = 1e-9;
 /// Of a quotient that is zero: of other numbers, whose units are not known here.
 constexpr double kRoundOff = 1e-13;
 double tidy(double x) { return std::abs(x) < kNothing ? 0 : x; }
+
+/// Two digits of an error, never with an exponent above one.
+std::string two_digits(double error) {
+  if (!(error >= 99.5)) return fmt::format("{:.2g}", tidy(error));
+  const double step = std::pow(10, std::floor(std::log10(error)) - 1);
+  return fmt::format("{:.0f}", step * std::round(error / step));
+}
 
 /// Everything in a summary that is a launch, by its place there; of `models` by the model's name.
 void launches_in(const json& j, const std::string& name, std::map<std::string, json>& out) {
@@ -258,7 +276,7 @@ std::string difference(const fs::path& a_dir, const fs::path& b_dir) {
         rows += fmt::format("  {:<36} {:>12.6g} {:>12.6g} {:>+12.4g} {:>12}\n", model + " " + key, p, q, off, "-");
         continue;
       }
-      if (band.empty() && std::abs(off) <= error) {
+      if (band.empty()) {
         const json& larger = of_a >= of_b ? launch : other;
         const bool own = larger.contains("numerical_error") && larger["numerical_error"].contains(key);
         band = fmt::format(
@@ -271,8 +289,8 @@ std::string difference(const fs::path& a_dir, const fs::path& b_dir) {
                   "`accuracy` to see how far B - A moves"
                 : "");
       }
-      rows += fmt::format("  {:<36} {:>12.6g} {:>12.6g} {:>+12.4g} {:>12.2g}  {}\n", model + " " + key, p, q, off,
-                          tidy(error), std::abs(off) > error ? "beyond" : "within");
+      rows += fmt::format("  {:<36} {:>12.6g} {:>12.6g} {:>+12.4g} {:>12}  {}\n", model + " " + key, p, q, off,
+                          two_digits(error), std::abs(off) > error ? "beyond" : "within");
     }
   }
   for (const auto& [model, launch] : right)

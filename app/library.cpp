@@ -363,9 +363,12 @@ std::optional<NamedContact> named_contact(Table root) {
     return *std::ranges::find(sets, wanted, &NamedContact::name);
   }
   if (sets.size() == 1) return sets.front();
+  std::string loft = "the loft is not known before the swing";
   if (root.has("delivery") && root.has("head") && !root.has("motion")) {
     Blow blow;
     blow.delivery = read_delivery_of(root);
+    loft = fmt::format("none of them saw this spin loft, {:.3g} deg (dynamic loft less attack angle of [delivery])",
+                       degrees(blow.delivery.dynamic_loft - blow.delivery.attack_angle));
     // A set that knows the case's face comes before one of the right loft alone.
     const std::string face = face_name(root);
     for (const bool same_face : {true, false})
@@ -374,9 +377,8 @@ std::optional<NamedContact> named_contact(Table root) {
             beyond({.spin_loft = s.seen.spin_loft}, use_of(blow)).empty())
           return s;
   }
-  ball->fail("model", fmt::format("'{}' has several sets of parameters and none of them saw this loft: say which by "
-                                  "`reduced` ({})",
-                                  *model, fmt::join(names, ", ")));
+  ball->fail("model", fmt::format("'{}' has several sets of parameters and {}: say which by `reduced` ({})", *model,
+                                  loft, fmt::join(names, ", ")));
 }
 
 bool asks_law(std::string_view model) {

@@ -204,10 +204,10 @@ std::string off_the_face(const Blow& blow) {
                           : std::abs(toe) <= width && std::abs(high) <= height;
   if (on) return {};
   return fmt::format(
-      "the ball is struck off the face: {:g} mm towards the toe and {:g} mm up, where {} reaches {:g} mm "
+      "the ball is struck off the face: {:g} mm towards the {} and {:g} mm {}, where {} reaches {:g} mm "
       "to either side and {:g} mm up and down",
-      1e3 * toe, 1e3 * high, bounded ? "the ellipse on which this face deflects" : "no face by the rules", 1e3 * width,
-      1e3 * height);
+      1e3 * std::abs(toe), toe < 0 ? "heel" : "toe", 1e3 * std::abs(high), high < 0 ? "down" : "up",
+      bounded ? "the ellipse on which this face deflects" : "no face by the rules", 1e3 * width, 1e3 * height);
 }
 
 }  // namespace hosel::app

@@ -263,7 +263,7 @@ nlohmann::json report_flight(Output& out, const FlightSetup& setup, const std::s
   const models::FlightBudget budget =
       models::flight_budget(launch, ball, setup.conditions, setup.options, setup.errors, setup.others);
   const std::string how =
-      fmt::format("{}, {} in air of {:.4f} kg/m^3", name, setup.conditions.law.name, setup.conditions.air.density);
+      fmt::format("{}, {} in air of {:.4f} kg/m³", name, setup.conditions.law.name, setup.conditions.air.density);
   out.say(fmt::format("\n{}:", how));
   out.show(post::budget_table(budget, setup.errors, setup.unit), "The flight: " + how);
   const models::Flight& flight = flights.front().shot.flight;

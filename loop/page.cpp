@@ -324,8 +324,8 @@ std::string page(const LoopResult& r, const Shots& table) {
                        a.nearest.empty() ? std::string("–") : fmt::format("{:+.3f}", a.likeness));
     s += "</table></div>" + gloss(
                                 "An effect changes the predictions in a pattern. The share is how much of that pattern "
-                                "the fitted effects can make as well. Correlation: of the pattern with that of the "
-                                "nearest other effect; 1 where they are the same.");
+                                "the fitted effects can make as well. What they leave of it is compared with what they "
+                                "leave of the others: the most alike, and their correlation.");
     if (!r.likeness.null_vectors.empty()) {
       s += "<p>These sums of effects change the predictions by almost nothing. In brackets: the singular value of the "
            "Jacobian, in noise units, its columns of unit length.</p><ul>";
@@ -343,6 +343,7 @@ std::string page(const LoopResult& r, const Shots& table) {
     for (const Location& l : r.unexplained)
       if (l.channel.empty() || l.regressor.empty())
         s += fmt::format("<li>{}{}", escape_html(l.channel.empty() ? "" : l.channel + ": "), escape_html(l.detail));
+      else if (l.regressor == "constant") s += fmt::format("<li>{} is off in the mean", escape_html(l.channel));
       else
         s += fmt::format("<li>{} against {} <small>({})</small>", escape_html(l.channel), escape_html(l.regressor),
                          escape_html(l.detail));

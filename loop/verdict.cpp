@@ -214,8 +214,9 @@ Verdict judge(const Study& study, const std::vector<WrongColumn>& columns, const
   if (one.lone ? !ties_of(one, s).empty() : !s.ties.empty() || !restitution.empty()) return Verdict::ambiguous;
   unexplained = problem.doubts(s);
   if (s.level > 0 && s.chosen.at_bound)
-    unexplained.push_back(
-        {"", "", fmt::format("{} only at the edge of what is plausible", fmt::join(s.adopted, " and "))});
+    unexplained.push_back({"", "",
+                           fmt::format("{} would explain it only with a size at the edge of what is plausible",
+                                       fmt::join(s.adopted, " and "))});
   if (!unexplained.empty()) return Verdict::unexplained;
   if (declared && problem.heavy_tails(s)) return Verdict::noise_contradicted;
   return s.adopted.empty() ? Verdict::no_residual : Verdict::explained;

@@ -74,7 +74,10 @@ Sheet parse_csv(std::string text, const std::string& name) {
       header = false;
     } else {
       if (row.size() != sheet.names.size())
-        fail(row_line, fmt::format("{} cells where the header has {}", row.size(), sheet.names.size()));
+        fail(row_line, fmt::format("{} cells where the header has {}{}", row.size(), sheet.names.size(),
+                                   sheet.names.size() == 1 && sheet.names[0].find_first_of(";\t|") != std::string::npos
+                                       ? ": a comma is what separates cells"
+                                       : ""));
       for (std::size_t c = 0; c < row.size(); ++c) sheet.columns[c].push_back(std::move(row[c]));
       sheet.lines.push_back(row_line);
     }

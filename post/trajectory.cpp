@@ -20,8 +20,8 @@ Figure trajectory_figure(std::string title, const std::vector<NamedFlight>& flig
              .x_label = fmt::format("towards the target [{}]", shown),
              .y_label = fmt::format("height [{}]", shown)},
       top = side;
-  top.title = "from above";
-  top.y_label = fmt::format("left  <-  [{}]  ->  right", shown);
+  top.title = "from above";  // the target to the right: left is up
+  top.y_label = fmt::format("right  <-  [{}]  ->  left", shown);
   // Many flights are told apart by their first words, "7-iron" of "7-iron, measured", in colour; by the others in
   // dashes.
   struct Look {
@@ -61,18 +61,18 @@ Figure trajectory_figure(std::string title, const std::vector<NamedFlight>& flig
       height.colour = look.colour;
       if (look.dashes > 1) height.style = fmt::format("lines dt {}", look.dashes);
     }
-    Series right = height;
+    Series aside = height;
     const auto add = [&](const Vec3& x) {
       height.x.push_back(x.x() / size(unit));
       height.y.push_back(x.z() / size(unit));
-      right.x.push_back(x.x() / size(unit));
-      right.y.push_back((0 - x.y()) / size(unit));
+      aside.x.push_back(x.x() / size(unit));
+      aside.y.push_back(x.y() / size(unit) + 0.0);
     };
     for (const models::FlightPoint& p : f.shot.flight.path) add(p.position);
     if (f.shot.run)
       for (const Vec3& x : f.shot.run->path) add(x);
     side.series.push_back(std::move(height));
-    top.series.push_back(std::move(right));
+    top.series.push_back(std::move(aside));
   }
   figure.panels = {std::move(side)};
   // Balls that fly straight have no second view.

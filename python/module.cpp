@@ -106,8 +106,15 @@ class Model {
  private:
   static std::string unknown(const std::string& name) {
     Texts known;
+    if (const auto input = input_of(split_unit(name).stem)) {
+      for (const Unit& u : units())
+        if (u.dimension == quantity(*input).dimension) known.push_back(fmt::format("{}_{}", stem(*input), u.suffix));
+      return fmt::format("'{}' has no unit of {}: {}", name, hosel::name(quantity(*input).dimension),
+                         fmt::join(known, ", "));
+    }
     for (int i = 0; i < kInputs; ++i) known.emplace_back(stem(static_cast<Input>(i)));
-    return fmt::format("'{}' is no input of a blow with a unit (known: {})", name, fmt::join(known, ", "));
+    return fmt::format("'{}' is no input of a blow (known, each with a unit behind it: {})", name,
+                       fmt::join(known, ", "));
   }
 
   app::AskedModel model_;

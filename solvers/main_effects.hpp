@@ -17,7 +17,7 @@ struct MainEffect {
   double share = 0;                ///< of the response's variance, by this factor alone
   double low = 0, high = 0;        ///< 95 % interval of the share
   double at_low = 0, at_high = 0;  ///< response at the factor's lowest and highest value (ordered), else lowest and
-                                   ///< highest response over its levels; the other factors at their means
+                                   ///< highest response over its levels; the mean over the other factors
   std::optional<double> between;   ///< response where the fitted curve turns, where that is beyond both ends by a
                                    ///< quarter of their difference
 };

@@ -67,10 +67,11 @@ void answer(Output& out, const ImpactStory& s) {
     return text;
   };
   const double v = l.ball_speed(), in_mph = v / kMpsPerMph;
+  // Its error before the other unit, which has another.
   std::string more = mph ? note("ball_speed", kMpsPerMph, 1, " mph") : note("ball_speed", 1, 2, " m/s");
-  if (!more.empty()) more = "; " + more;
+  if (!more.empty()) more += "; ";
   page.answer("ball speed", mph ? fmt::format("{:.1f} mph", in_mph) : fmt::format("{:.2f} m/s", v),
-              (mph ? fmt::format("{:.2f} m/s", v) : fmt::format("{:.1f} mph", in_mph)) + more);
+              more + (mph ? fmt::format("{:.2f} m/s", v) : fmt::format("{:.1f} mph", in_mph)));
   const double club = s.blow.delivery.club_speed;
   if (std::isfinite(s.blow.club.head.mass) && club > 0)
     page.answer("smash factor", fmt::format("{:.3f}", v / club),
@@ -136,20 +137,21 @@ void suggest(Output& out, const ImpactStory& s) {
   RunPage& page = out.page();
   const std::string here = shell_word(out.directory().string()),
                     again = "hosel run " + shell_word((out.directory() / "case.resolved.toml").string());
-  const bool fe = !s.runs.empty();
+  const bool fe = !s.runs.empty(), wall = std::isinf(s.blow.club.head.mass);
   if (fe && out.resolved_case().find("accuracy = \"look\"") != std::string::npos)
     page.suggest(
         "A finer answer, with the numerical error of every number (some ten times as long):",
         again + " --set accuracy=default --set error_estimate=true --out " + beside_out(out.directory(), "finer"));
-  if (!s.yields && std::isfinite(s.blow.club.head.mass) && models::wants_yielding_face(s.blow.club.head))
+  if (!s.yields && !wall && models::wants_yielding_face(s.blow.club.head))
     page.suggest("A face that yields, as a modern driver's does:",
                  again + " --set face.name=modern-driver --out " + beside_out(out.directory(), "yielding"));
-  if (!s.flies)
+  if (!s.flies && !wall)
     page.suggest("How far the ball goes:",
                  again + " --set flight.law=ferguson-2022 --out " + beside_out(out.directory(), "flight"));
-  page.suggest("The same blow 10 mm nearer the toe, and what that changes:",
-               again + fmt::format(" --set delivery.impact_toe_mm={0:g} --out {2}\nhosel diff {1} {2}",
-                                   1e3 * s.blow.delivery.impact_toe + 10, here, beside_out(out.directory(), "toe")));
+  if (!wall)
+    page.suggest("The same blow 10 mm nearer the toe, and what that changes:",
+                 again + fmt::format(" --set delivery.impact_toe_mm={0:g} --out {2}\nhosel diff {1} {2}",
+                                     1e3 * s.blow.delivery.impact_toe + 10, here, beside_out(out.directory(), "toe")));
   if (fe && s.vtk) page.suggest("Ball, patch and club in ParaView, frame by frame:", "hosel open " + here);
 }
 

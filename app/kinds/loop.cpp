@@ -136,8 +136,11 @@ class LoopJob final : public Job {
     withdraw_offers(out);
     offer_corrected(out, case_, result, fe_.get());
     report_loop(out, result, case_.shots, "rows", [&] {
-      if (landings_)
-        show_landings(out, *landings_, case_.blow.ball, case_.flight.value_or(models::FlightConditions{}), mirrored_);
+      if (!landings_) return;
+      std::set<std::string> flagged;
+      for (const loop::Flag& f : result.flagged) flagged.insert(f.id);
+      show_landings(out, *landings_, flagged, case_.blow.ball, case_.flight.value_or(models::FlightConditions{}),
+                    mirrored_);
     });
   }
 

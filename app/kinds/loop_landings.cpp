@@ -32,8 +32,8 @@ std::string spread(const std::vector<double>& values, double unit, int digits) {
 
 }  // namespace
 
-void show_landings(Output& out, const loop::Shots& shots, const Ball& ball, const models::FlightConditions& conditions,
-                   bool mirrored) {
+void show_landings(Output& out, const loop::Shots& shots, const std::set<std::string>& left_out, const Ball& ball,
+                   const models::FlightConditions& conditions, bool mirrored) {
   const loop::Column *clubs = shots.find("club"), *speed = shots.find_stem("ball_speed"),
                      *angle = shots.find_stem("launch_angle"), *spin = shots.find_stem("spin_rate");
   if (spin == nullptr) spin = shots.find_stem("backspin");
@@ -48,7 +48,12 @@ void show_landings(Output& out, const loop::Shots& shots, const Ball& ball, cons
   std::vector<LandedClub> all;
   post::Table landings;
   landings.in_files({"shot", "club", "carry_" + unit, "side_" + unit}, "{:.2f}");
+  std::size_t without = 0;
   for (std::size_t i = 0; i < shots.rows(); ++i) {
+    if (left_out.contains(shots.id[i])) {
+      ++without;
+      continue;
+    }
     const std::string name = !clubs                           ? "all shots"
                              : !clubs->numeric                ? clubs->text[i]
                              : std::isfinite(clubs->value[i]) ? fmt::format("{:g}", clubs->value[i])
@@ -90,6 +95,9 @@ void show_landings(Output& out, const loop::Shots& shots, const Ball& ball, cons
       "{}; "
       "side to the right is positive.",
       conditions.wind.speed > 0 ? "in the case's wind" : "in calm air", conditions.law.name);
+  if (without > 0)
+    told += fmt::format(" {} shot{} that the loop flagged {} left out.", without, without == 1 ? "" : "s",
+                        without == 1 ? "is" : "are");
   if (mirrored)
     told += " The player is left-handed and the shots are mirrored: what is called right is the player's left.";
   out.page().section("", "<p><small>" + told + "</small></p>");

@@ -1,6 +1,8 @@
 /// What a player asks of a session beside the loop's findings: each club's figures, and where its shots land.
 #pragma once
 
+#include <set>
+
 #include "app/output.hpp"
 #include "loop/shots/shots.hpp"
 #include "models/flight/flight.hpp"
@@ -10,9 +12,9 @@ namespace hosel::app {
 /// A line a club (column `club`; one for all without it): mean and standard deviation of ball speed, launch angle,
 /// spin, carry and side. A shot flies from its measured launch. One whose launch is not whole counts in what it has;
 /// one without direction or tilt has no side. Draws figures/landings with the ellipse that holds 95 % of a normal
-/// distribution with each club's scatter; writes landings.csv. `mirrored`: the shots are a left-handed player's, and
-/// the page says so.
-void show_landings(Output& out, const loop::Shots& shots, const Ball& ball, const models::FlightConditions& conditions,
-                   bool mirrored);
+/// distribution with each club's scatter; writes landings.csv. `left_out`: ids of shots that count in nothing, and the
+/// page says how many. `mirrored`: the shots are a left-handed player's, and the page says so.
+void show_landings(Output& out, const loop::Shots& shots, const std::set<std::string>& left_out, const Ball& ball,
+                   const models::FlightConditions& conditions, bool mirrored);
 
 }  // namespace hosel::app

@@ -150,7 +150,7 @@ class StudyJob final : public PointJob {
     if (!populations_.missing.empty()) return out.skip(populations_.missing);
     if (!motion_.empty()) return out.skip(motion_);
     if (off_face_ > 0)
-      out.warn(fmt::format("{} of {} points are struck off the face, the first {}", off_face_, table_.design.size(),
+      out.warn(fmt::format("{} of {} points are struck off the face. The first{}", off_face_, table_.design.size(),
                            first_off_face_));
     for (const std::string& row : left_out_) out.lack("left out, since its recording is not there: " + row);
     for (const json& p : points)
@@ -221,11 +221,11 @@ class StudyJob final : public PointJob {
 
  private:
   /// What points that answered do not have is in no mean, effect or map.
-  static void tell_missing(Output& out, const StudyTable& table, const std::vector<json>& points) {
+  void tell_missing(Output& out, const StudyTable& table, const std::vector<json>& points) const {
     for (const StudySeries& s : table.series) {
       std::size_t answered = 0, missing = 0;
       for (std::size_t d = 0; d < s.y.size(); ++d)
-        if (!points[d * table.models.size() + s.model].contains("error")) {
+        if (!points[d * table.models.size() + s.model].contains("error") && sought(table.outputs[s.output], d)) {
           ++answered;
           missing += !std::isfinite(s.y[d]);
         }
@@ -236,6 +236,13 @@ class StudyJob final : public PointJob {
             "{}: no point has it{}", s.name,
             table.outputs[s.output].starts_with("total_") ? "; a ball that rolls on needs [flight.turf]" : ""));
     }
+  }
+
+  /// Whether a point has this column: what is solved for is sought in some variants only.
+  bool sought(const std::string& output, std::size_t d) const {
+    const auto s = std::ranges::find(solves_, output, &StudySolve::name);
+    return s == solves_.end() || s->variants.empty() ||
+           std::ranges::find(s->variants, table_.design.cells(d).front()) != s->variants.end();
   }
 
   /// Whether the blows of a grid make maps.
@@ -422,7 +429,8 @@ class StudyJob final : public PointJob {
     if (asked.swung && conditions_.matched_launch) root.fail("matched_launch", "the swing says the loft");
     if (!asked.models.front().empty() && std::isfinite(asked.blow.club.head.mass))
       if (const std::string sentence = off_the_face(asked.blow); !sentence.empty() && off_face_++ == 0)
-        first_off_face_ = table_.design.said(d) + (table_.design.said(d).empty() ? "" : ": ") + sentence;
+        first_off_face_ = (table_.design.said(d).empty() ? "" : fmt::format(", {}", table_.design.said(d))) + ": " +
+                          sentence;
     table_.asked.insert(table_.asked.end(), asked.models.begin(), asked.models.end());
     leave_study_keys(one.root());
     one.finish();
@@ -447,8 +455,7 @@ class StudyJob final : public PointJob {
   std::vector<std::string> solved(std::size_t d, std::size_t model, json& result) const {
     std::vector<std::string> set = overrides(d);
     for (const StudySolve& s : solves_) {
-      if (!s.variants.empty() && std::ranges::find(s.variants, table_.design.cells(d).front()) == s.variants.end())
-        continue;
+      if (!sought(s.name, d)) continue;
       CaseFile problem(*blow_, with(set, s, s.low, true));
       read_study_blow(problem.root());
       const std::string key = fmt::format("{}\n{}\n{}", s.name, model, problem.resolved());

@@ -57,6 +57,9 @@ Leader leader(const StudyEffects& effects, std::size_t series) {
   return e.predicted < most ? Leader::unknown : Leader::alone;
 }
 
+/// Whether an answer prints as one number at all points.
+bool constant(const StudySeries::Spread& s) { return fmt::format("{:.4g}", s.low) == fmt::format("{:.4g}", s.high); }
+
 /// From the parameter that takes part in most of the variance to the one that takes part in least.
 std::vector<std::size_t> by_total(const StudyEffects& effects, std::size_t series) {
   std::vector<std::size_t> order = effects.of[series]->order;
@@ -157,8 +160,7 @@ std::string sentence(const StudyTable& table, const StudyEffects& effects, std::
   };
   const std::string& answer = table.series[series].spoken;
   const StudySeries::Spread spread = table.series[series].spread();
-  if (const std::string low = fmt::format("{:.4g}", spread.low); low == fmt::format("{:.4g}", spread.high))
-    return fmt::format("{} is {} at every point.", capital(answer), low);
+  if (constant(spread)) return fmt::format("{} is {:.4g} at every point.", capital(answer), spread.low);
   switch (told) {
     case Leader::alone: break;
     case Leader::correlated:
@@ -200,6 +202,11 @@ std::string sentence(const StudyTable& table, const StudyEffects& effects, std::
     if (all.value > first.share + 0.02)
       text += fmt::format(" With its interactions the first takes part in {} % ({} to {} %).", percent(all.value),
                           percent(all.low), percent(all.high));
+  } else if (e->full_factorial) {  // its shares are exact: a point left out says nothing more
+    double alone = 0;
+    for (const solvers::MainEffect& f : e->factors) alone += f.share;
+    if (alone < 0.8)
+      text += fmt::format(" One parameter at a time makes {} % of it: the rest are interactions.", percent(alone));
   } else if (e->predicted < 0.8)
     text += fmt::format(
         " One parameter at a time predicts {} % of it at points left out: the rest are interactions and "
@@ -235,7 +242,7 @@ void tell_effects(Output& out, const StudyTable& table, const StudyEffects& effe
     if (const auto& e = effects.emulators[s])
       summary["emulator"][series.name] = {
           {"points", e->points()}, {"rms_error", e->error()}, {"predicted", e->predicted()}};
-    if (!several || !effects.of[s]) {
+    if (!several || !effects.of[s] || constant(series.spread())) {
       if (several) row.insert(row.end(), {"-", "-"});
       if (emulated) row.push_back(off);
       continue;
@@ -296,10 +303,11 @@ post::Figure tornado(const StudyTable& table, const StudyEffects& effects, const
   const auto columns = table.design.columns();
   constexpr std::size_t most = 12;
   const int bars = int(std::min(most, effects.columns.size()));
-  post::Figure figure{.title = "from a parameter's lowest value to its highest, the others at their means",
-                      .columns = 2,
-                      .panel_width = 760,
-                      .panel_height = 130 + 26 * bars};
+  post::Figure figure{
+      .title = "mean answer at a parameter's lowest and at its highest value, over the values of the others",
+      .columns = 2,
+      .panel_width = 760,
+      .panel_height = 130 + 26 * bars};
   for (const std::size_t s : which) {
     if (!effects.of[s]) continue;
     const solvers::MainEffects& e = *effects.of[s];

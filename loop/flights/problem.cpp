@@ -645,22 +645,22 @@ std::vector<Location> FlightProblem::doubts(const Selection& s) const {
 }
 
 NextExperiment FlightProblem::next_experiment(const LoopResult& so_far) const {
-  if (too_few()) return {.text = "more flights"};
+  if (too_few()) return {.text = "More flights"};
   if (so_far.verdict == Verdict::ambiguous) {
     const std::string sensor = fmt::format("{}", fmt::join(sensors_of(so_far.ties, case_.own), "; or "));
-    return {.text = fmt::format("these flights cannot separate {}: measure {}",
+    return {.text = fmt::format("These flights cannot separate {}: measure {}",
                                 fmt::join(so_far.ties | std::views::join, ", "), sensor),
             .sensor = sensor};
   }
   if (so_far.verdict == Verdict::unexplained && !so_far.unexplained.empty()) {
     const Location& l = so_far.unexplained.front();
-    return {.text = fmt::format("flights that differ in {} alone, since {} depends on it as no candidate does",
+    return {.text = fmt::format("Measure flights that differ in {} alone, since {} depends on it as no candidate does",
                                 l.regressor.empty() ? "one quantity" : l.regressor,
                                 l.channel.empty() ? "a reading" : l.channel)};
   }
   if (so_far.verdict == Verdict::insufficient)
-    return {.text = "more flights: the list of smallest effects says what these could have shown"};
-  return {.text = "nothing is tied; flights at other speeds and spins would narrow the parameters most"};
+    return {.text = "More flights: the list of smallest effects says what these could have shown"};
+  return {.text = "Nothing is tied. Flights at other speeds and spins would narrow the parameters most"};
 }
 
 LoopResult run(const FlightCase& c) {

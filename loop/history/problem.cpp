@@ -370,27 +370,27 @@ std::vector<Location> HistoryProblem::places(const Selection& s) const {
 }
 
 NextExperiment HistoryProblem::next_experiment(const LoopResult& so_far) const {
-  if (too_few()) return {.text = "a longer record"};
+  if (too_few()) return {.text = "A longer record"};
   if (so_far.verdict == Verdict::unexplained && !so_far.unexplained.empty()) {
     const auto placed = std::ranges::find_if(so_far.unexplained, [](const Location& l) { return !l.channel.empty(); });
     const std::string left = placed == so_far.unexplained.end() ? so_far.unexplained.front().detail
                                                                 : fmt::format("{} holds {} that no candidate explains",
                                                                               placed->channel, placed->detail);
     return {.text = fmt::format(
-                "repeat the record with one thing changed at a time (free length, tip mass, amplitude): {}", left)};
+                "Repeat the record with one thing changed at a time (free length, tip mass, amplitude): {}", left)};
   }
   if (so_far.verdict == Verdict::ambiguous) {
     const std::string sensor = fmt::format("{}", fmt::join(sensors_of(so_far.ties, own_), "; or "));
-    return {.text = fmt::format("this record cannot separate {}: measure {}; or record the same club with a known mass "
+    return {.text = fmt::format("This record cannot separate {}: measure {}; or record the same club with a known mass "
                                 "at the tip and with a shorter free length",
                                 fmt::join(so_far.ties | std::views::join, ", "), sensor),
             .sensor = sensor};
   }
   if (so_far.verdict == Verdict::insufficient)
-    return {.text = "a longer or stronger record: the list of smallest effects says what this one could have shown"};
+    return {.text = "A longer or stronger record: the list of smallest effects says what this one could have shown"};
   if (so_far.verdict == Verdict::noise_contradicted)
-    return {.text = "a record at rest, to find the instrument's own scatter"};
-  return {.text = "nothing is tied; a longer record would narrow the parameters most"};
+    return {.text = "A record at rest, to find the instrument's own scatter"};
+  return {.text = "Nothing is tied. A longer record would narrow the parameters most"};
 }
 
 }  // namespace hosel::loop

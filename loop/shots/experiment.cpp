@@ -201,28 +201,36 @@ NextExperiment design(const ShotCase& c, const Problem& problem, const ShotModel
       const auto l = std::ranges::find_if(so_far.unexplained, [](const Location& x) { return !x.regressor.empty(); });
       if (l == so_far.unexplained.end())
         return {
-            .text = fmt::format("repeat one setting ten times, ball, player and instrument noted for every shot: {}",
+            .text = fmt::format("Repeat one setting ten times, ball, player and instrument noted for every shot: {}",
                                 so_far.unexplained.front().detail)};
       const auto said = [&](const char* of_channel) {
         return l->channel.empty() ? l->detail : l->channel + of_channel;
       };
-      if (l->regressor == "constant")
-        return {.text = fmt::format(
-                    "check the zero of {} against another instrument: it is off by the same amount everywhere",
-                    l->channel.empty() ? "every channel" : l->channel)};
+      if (l->regressor == "constant") {
+        const std::string text = fmt::format("Check the zero of {} against another instrument: it is off in the mean",
+                                             l->channel.empty() ? "every channel" : l->channel);
+        // What follows something else as well is no zero.
+        for (const StructureMap* map : {&so_far.selection.after, &so_far.selection.before})
+          for (const Finding& f : map->findings)
+            if (f.channel >= 0 && problem.channel(f.channel).name == l->channel && f.regressor != "constant" &&
+                f.p_adjusted < kTold)
+              return {.text = fmt::format("Change {} on purpose, keep everything else as it is, and repeat each "
+                                          "setting: {} is off in the mean, and by how much follows it",
+                                          f.regressor, l->channel)};
+        return {.text = text};
+      }
       if (l->regressor == "shot")
-        return {.text = fmt::format("repeat the first shots of the session at its end, in the same order: {}",
+        return {.text = fmt::format("Repeat the first shots of the session at its end, in the same order: {}",
                                     said(" follows the order of the shots"))};
-      return {.text = fmt::format("change {} on purpose, keep everything else as it is, and repeat each setting: {}",
+      return {.text = fmt::format("Change {} on purpose, keep everything else as it is, and repeat each setting: {}",
                                   l->regressor, said(" follows it in a way that no candidate explains"))};
     }
     case Verdict::insufficient:
-      return {.text = "more shots of the same kind: the list of smallest effects says what these could have shown"};
-    case Verdict::noise_contradicted:
-      return {.text = "replicates: ten shots at one setting, to find the instrument's own scatter"};
+      return {.text = "More shots of the same kind: the list of smallest effects says what these could have shown"};
+    case Verdict::noise_contradicted: return {.text = "Ten shots at one setting, to find the instrument's own scatter"};
     case Verdict::explained:
     case Verdict::no_residual:
-      return {.text = "nothing is tied; shots at the edges of the recorded range would narrow the parameters most"};
+      return {.text = "Nothing is tied. Shots at the edges of the recorded range would narrow the parameters most"};
     case Verdict::ambiguous: break;
   }
 
@@ -242,7 +250,7 @@ NextExperiment design(const ShotCase& c, const Problem& problem, const ShotModel
   const std::size_t most = std::max<std::size_t>(12, single * 3 / 2);
   std::vector<std::size_t> chosen;   // for all pairs together
   std::vector<std::size_t> partial;  // the most that shots can do for a pair that they do not part
-  std::vector<std::string> sentences, sensors;
+  std::vector<std::string> by_first, by_more, open, sensors, sentences;
   for (const Rivals& r : rivals(so_far)) {
     const std::vector<Fit> one = family(problem, r.a->fit, r.one, so_far.forms),
                            two = family(problem, r.b->fit, r.two, so_far.forms);
@@ -272,18 +280,26 @@ NextExperiment design(const ShotCase& c, const Problem& problem, const ShotModel
       for (const std::string& s : of_pair)
         if (!std::ranges::count(sensors, s)) sensors.push_back(s);
       if (after > before + 1 && partial.empty()) partial = more;
-      sentences.push_back(
-          fmt::format("Shots within this range do not separate {} from {}: they differ by {:.1f} noise units now, by "
-                      "{:.1f} after {} more shots, and 4.8 are needed. Measure {}",
-                      r.one, r.two, before, after, more.size(), fmt::join(of_pair, "; or ")));
+      open.push_back(
+          fmt::format("{} from {} ({:.1f} now, {:.1f} after {} more shots)", r.one, r.two, before, after, more.size()));
     } else {
       chosen.insert(chosen.end(), more.begin(), more.end());
-      sentences.push_back(chosen.empty() ? fmt::format("More shots of the same kind separate {} from {}", r.one, r.two)
-                                         : fmt::format("{} shots at these inputs separate {} from {}: they differ by "
-                                                       "{:.1f} noise units now, by {:.1f} then, and 4.8 are needed",
-                                                       chosen.size(), r.one, r.two, before, after));
+      if (chosen.empty()) by_more.push_back(fmt::format("{} from {}", r.one, r.two));
+      else
+        by_first.push_back(fmt::format("{} from {} by the first {} ({:.1f} now, {:.1f} then)", r.one, r.two,
+                                       chosen.size(), before, after));
     }
   }
+  if (!by_first.empty())
+    sentences.push_back(fmt::format("Shots at the inputs below separate {}, in noise units; 4.8 are needed",
+                                    fmt::join(by_first, "; ")));
+  if (!by_more.empty())
+    sentences.push_back(fmt::format("More shots of the same kind separate {}", fmt::join(by_more, "; ")));
+  if (!open.empty())
+    sentences.push_back(
+        fmt::format("Shots within this range do not separate {}, in noise units; 4.8 are needed. "
+                    "Measure {}",
+                    fmt::join(open, "; "), fmt::join(sensors, "; or ")));
   if (chosen.empty()) chosen = partial;
   for (const std::size_t k : chosen) {
     DesignedShot shot;
@@ -296,7 +312,7 @@ NextExperiment design(const ShotCase& c, const Problem& problem, const ShotModel
     if (!sensors.empty()) sentences.push_back(fmt::format("Measure {}", fmt::join(sensors, "; or ")));
   }
   if (!sensors.empty()) next.sensor = fmt::format("{}", fmt::join(sensors, "; or "));
-  next.text = sentences.empty() ? "no design found" : fmt::format("{}", fmt::join(sentences, ". "));
+  next.text = sentences.empty() ? "No design found" : fmt::format("{}", fmt::join(sentences, ". "));
   return next;
 }
 

@@ -133,8 +133,8 @@ Inputs make_inputs(const Shots& shots, const Blow& blow, bool head_mass_declared
     nominal[std::size_t(k)] = variance < error * std::max(0.1, 1 - 3 * std::sqrt(2 / count));
     if (nominal[std::size_t(k)])
       in.notes.push_back(
-          fmt::format("{}: the records differ by less than their declared error: each is taken as what was set, and "
-                      "what was as uncertain by that error",
+          fmt::format("{}: its values differ by less than their declared error. Each is taken as a nominal value, from "
+                      "which the true one differs by that error",
                       c->name));
   }
   for (int k = 0; k < kInputs; ++k)

@@ -647,7 +647,7 @@ std::string ShotProblem::FarOff::said() const {
 }
 
 NextExperiment ShotProblem::next_experiment(const LoopResult& so_far) const {
-  if (too_few()) return {.text = "more shots"};
+  if (too_few()) return {.text = "More shots"};
   return design(case_, *this, *model_, select_, so_far);
 }
 

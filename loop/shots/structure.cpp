@@ -133,9 +133,15 @@ void add_turns(const Shots& shots, const std::vector<int>& row_of, const std::ve
     for (long turn = 0; turn < (period == 2 ? 1 : period); ++turn) {
       Eigen::VectorXd x(n);
       for (Eigen::Index i = 0; i < n; ++i) x[i] = ((long(number(i)) - turn) % period) == 0;
-      if (standardise(x, rows))
-        all.push_back({"shot", "turn", fmt::format("one of every {} shots, number {} among them", period, turn ? turn : period),
-                       true, x});
+      // A column that names who or what is in turn says more.
+      const auto named = [&](const Regressor& r) {
+        Eigen::VectorXd left = x;
+        return r.kind == "group" && !beside(left, {&r.value}, rows);
+      };
+      if (std::ranges::none_of(all, named) && standardise(x, rows))
+        all.push_back({"shot", "turn",
+                       fmt::format("one of every {} shots, number {} among them", period, turn ? turn : period), true,
+                       x});
     }
 }
 

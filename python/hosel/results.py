@@ -19,6 +19,9 @@ class Table(dict):
         except KeyError:
             raise AttributeError(f"no column {name!r} (there are {', '.join(self)})") from None
 
+    def __missing__(self, name):
+        raise KeyError(f"no column {name!r} (there are {', '.join(self)})")
+
     def __repr__(self):
         rows = len(next(iter(self.values()), ()))
         width = max((len(name) for name in self), default=0)

@@ -1,5 +1,6 @@
 // What the command says of itself, and what it does with finished runs.
 #include <gtest/gtest.h>
+#include <regex>
 
 #include <nlohmann/json.hpp>
 
@@ -72,6 +73,12 @@ TEST(CommandLine, DiffNamesInputsAndLaunches) {
   EXPECT_NE(moved.text.find("beyond"), std::string::npos) << moved.text;
   EXPECT_EQ(moved.text.find("dynamic_loft"), std::string::npos) << moved.text;
   EXPECT_EQ(moved.text.find("e-1"), std::string::npos) << "digits of arithmetic: " << moved.text;
+  // Inputs in the digits that were stated; errors in two digits without an exponent.
+  run("d", "--set delivery.impact_toe_mm=0.7 --set delivery.club_speed_mps=46.1");
+  const Outcome stated = diff("a", "d");
+  EXPECT_NE(stated.text.find(" 0.7\n"), std::string::npos) << stated.text;
+  EXPECT_NE(stated.text.find(" 46.1\n"), std::string::npos) << stated.text;
+  EXPECT_FALSE(std::regex_search(stated.text, std::regex("e\\+0[0-9] +(beyond|within)"))) << stated.text;
   EXPECT_NE(same.text.find("inputs\n  the same\nlaunches\n  the same"), std::string::npos) << same.text;
   EXPECT_EQ(same.text.find("beyond"), std::string::npos) << same.text;
   const Outcome none = diff("a", "nothing");

@@ -661,6 +661,24 @@ TEST(Import, ThePageSaysWhereTheShotsLand) {
   EXPECT_TRUE(fs::exists(dir / "out" / "figures" / "landings.png") || o.text.find("gnuplot") != std::string::npos);
 }
 
+/// What the loop flags is no shot of a club's mean.
+TEST(Import, AFlaggedShotCountsInNoMean) {
+  const fs::path dir = test::fresh_directory("import_flagged");
+  std::string text =
+      "Club,Ball Speed (mph),Club Speed (mph),Launch Angle,Launch Direction,Spin Rate,Spin Axis,Dynamic Loft\n";
+  for (int i = 0; i < 24; ++i)
+    text += fmt::format("7i,{},{},{},{},{},{},{}\n", i == 9 ? 1140 : 114 + i % 5, 82 + 0.7 * (i % 5),
+                        16 + 0.3 * (i % 4), i % 3 - 1, 6400 + 40 * (i % 7), i % 4 - 1, 22 + 0.4 * (i % 4));
+  ASSERT_EQ(import_text(dir, text).status, 0);
+  const auto o = command("run '" + (dir / "case").string() + "' --out '" + (dir / "out").string() + "'");
+  ASSERT_EQ(o.status, 0) << o.text;
+  const post::Sheet landings = post::read_csv(dir / "out" / "landings.csv");
+  EXPECT_EQ(landings.rows(), 23u);
+  const std::string page = test::content(dir / "out" / "report.html");
+  EXPECT_NE(page.find("1 shot that the loop flagged is left out"), std::string::npos);
+  EXPECT_NE(page.find("115.8 ± 1.4"), std::string::npos) << "of the other 23";
+}
+
 /// Where the carry alone tells the unit of a speed, it is in the yards or metres that go with that unit.
 TEST(Import, ACarryThatTellsTheUnitIsReadInItsOwn) {
   const fs::path dir = test::fresh_directory("import_carry_unit");

@@ -90,8 +90,26 @@ TEST(StudyAnswers, StrikesOffTheFaceAreCounted) {
       study("figures = false\n", "[[axis]]\nkey = \"delivery.impact_toe_mm\"\nvalues = [0, 60, 80, 90]\n");
   const Outcome o = run(dir, text);
   ASSERT_EQ(o.status, 0) << o.text;
-  EXPECT_NE(o.text.find("2 of 4 points are struck off the face"), std::string::npos) << o.text;
+  EXPECT_NE(o.text.find("2 of 4 points are struck off the face. The first, impact toe 80 mm: the ball is struck off"),
+            std::string::npos)
+      << o.text;
+  const Outcome heel = run(dir, std::regex_replace(text, std::regex("0, 60, 80, 90"), "-80, 0"));
+  EXPECT_NE(heel.text.find("80 mm towards the heel"), std::string::npos) << heel.text;
   EXPECT_EQ(run(dir, text, "--strict").status, 3);
+}
+
+/// What prints as one number goes with no parameter, in the sentence and in the table.
+TEST(StudyAnswers, AConstantAnswerGoesWithNothing) {
+  const fs::path dir = fresh_directory("study_constant");
+  const std::string axes = kMasses + "[[axis]]\nkey = \"delivery.impact_toe_mm\"\nvalues = [-10, 0, 10]\n[flight]\n";
+  const Outcome o = run(dir, "figures = false\n" + std::regex_replace(study("", axes), std::regex("\"ball_speed_mps\""),
+                                                                      "\"club_speed_mps\", \"side_m\""));
+  ASSERT_EQ(o.status, 0) << o.text;
+  EXPECT_TRUE(std::regex_search(o.text, std::regex("club speed \\[m/s\\] +45 +45 +45 +- +-"))) << o.text;
+  EXPECT_EQ(content(dir / "out/sensitivity.csv").find("club_speed"), std::string::npos);
+  // A full factorial knows its shares: nothing is said of points left out.
+  EXPECT_NE(o.text.find("Side [m] goes most with impact toe"), std::string::npos) << o.text;
+  EXPECT_EQ(o.text.find("at points left out"), std::string::npos) << o.text;
 }
 
 TEST(StudyAnswers, OneNameIsOfOneColumn) {

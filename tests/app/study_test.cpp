@@ -227,6 +227,10 @@ TEST(Study, FindsAKeyAndStatesALaunch) {
     }
   }
   EXPECT_EQ(points.rows(), 42u);
+  const Outcome one = command("run " + (dir / "case").string() + " --strict --out " + (dir / "one").string() +
+                              " --set \"solve[1].variants=['as it is']\"");
+  EXPECT_EQ(one.status, 0) << "the other variant's points lack what is not sought there: " << one.text;
+  EXPECT_EQ(CsvFile(dir / "one/points.csv").text("speed of the club", 41), "");
   const auto refused = [&](const std::string& set, const std::string& says) {
     const Outcome o = command("run " + (dir / "case").string() + " --quiet --out " + (dir / "refused").string() + set);
     EXPECT_NE(o.status, 0) << set;

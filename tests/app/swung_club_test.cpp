@@ -52,7 +52,7 @@ steps_per_contact = 12
 
 std::string club() {
   std::string text = kClub;
-  text.replace(text.find("GRIP"), 4, std::string(HOSEL_SOURCE_DIR) + "/cases/swing-driver/grip.csv");
+  text.replace(text.find("GRIP"), 4, HOSEL_SOURCE_DIR "/cases/swing-driver/grip.csv");
   return text;
 }
 
