@@ -31,7 +31,8 @@ struct Friction {
   Mat3 by_velocity = Mat3::Zero();  ///< [N s/m^3]
 };
 
-/// A new law is a class beside coulomb.hpp and a line of laws.cpp.
+/// A new law is a class beside coulomb.hpp. What states it is a field of PatchFriction (golf/contact_law.hpp) with its
+/// faults, and a key of app/read_options.cpp; a branch of laws.cpp chooses it. CONTRIBUTING.md has every step.
 class FrictionLaw {
  public:
   virtual ~FrictionLaw() = default;
