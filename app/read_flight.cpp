@@ -264,7 +264,7 @@ nlohmann::json report_flight(Output& out, const FlightSetup& setup, const std::s
       models::flight_budget(launch, ball, setup.conditions, setup.options, setup.errors, setup.others);
   const std::string how =
       fmt::format("{}, {} in air of {:.4f} kg/m³", name, setup.conditions.law.name, setup.conditions.air.density);
-  out.say(fmt::format("\n{}:", how));
+  out.tell(fmt::format("\n{}:", how));  // the page has it as the table's heading
   out.show(post::budget_table(budget, setup.errors, setup.unit), "The flight: " + how);
   const models::Flight& flight = flights.front().shot.flight;
   if (flight.outside > 0) {

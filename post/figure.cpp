@@ -203,7 +203,7 @@ std::pair<std::string, std::string> panel_script(const Panel& p, int k, int widt
       low = (std::isfinite(low) ? low : 0) - 1, high = low + 2;
     }
     s += fmt::format(
-        "set palette defined ({})\nset size {}\n"
+        "set palette defined ({})\nset format cb '%.6g'\nset size {}\n"
         "set cblabel {} offset 1,0\nset cbrange [{:.10g}:{:.10g}]\nset xrange [{:.10g}:{:.10g}]\nset yrange "
         "[{:.10g}:{:.10g}]\n",
         p.map_symmetric ? "0 '#2b5c8a', 0.5 '#f7f5ec', 1 '#b5432f'"

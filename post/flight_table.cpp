@@ -80,6 +80,7 @@ TextTable budget_table(const models::FlightBudget& b, const std::vector<models::
   if (!b.laws.empty()) {
     auto& row = table.rows.emplace_back(table.rows[0].size() - b.laws.size());
     row[0] = "time outside the law's range";
+    row[1] = fmt::format("{:.0f} %", 100 * b.outside);
     for (const auto& law : b.laws) row.push_back(fmt::format("{:.0f} %", 100 * law.outside));
   }
   return table;

@@ -9,6 +9,7 @@
 
 #include "app/read_blow.hpp"
 #include "app/read_paths.hpp"
+#include "post/digits.hpp"
 #include "post/labels.hpp"
 #include "post/table.hpp"
 #include "solvers/errors.hpp"
@@ -157,7 +158,9 @@ class FlightLawJob final : public Job {
     post::TextTable table{.rows = {{"group", "shots", "wind along [m/s]", "to the right [m/s]"}}, .first_width = 14};
     for (std::size_t g = 0; g < data_.groups.size(); ++g) {
       const auto n = std::ranges::count_if(shots, [&](const auto& s) { return s.group == int(g); });
-      const auto of = [&](int k) { return fmt::format("{:+.1f} +- {:.1f}", fit.winds[g][k], fit.wind_sd[g][k]); };
+      const auto of = [&](int k) {
+        return post::fixed(fit.winds[g][k], 1, true) + fmt::format(" +- {:.1f}", fit.wind_sd[g][k]);
+      };
       table.rows.push_back({data_.groups[g], fmt::format("{}", n), of(0), of(1)});
       summary["winds"][data_.groups[g]] = {{"along_mps", fit.winds[g][0]}, {"right_mps", fit.winds[g][1]}};
     }

@@ -58,8 +58,8 @@ class FaceReport {
       std::vector<double> grams;
       for (const double x : mass) grams.push_back(1e3 * x);
       const std::string label = "equivalent extra head mass [g]";
-      picture({.title = fmt::format("head mass by which {} plays as {}; {}", reference.map.title, layer.map.title,
-                                    post::kFaceView),
+      picture({.title = fmt::format("head mass to add to {} for it to play as {}; {}", reference.map.title,
+                                    layer.map.title, post::kFaceView),
                .panels = {post::face_panel(grid_, grams, label, label, false)},
                .panel_width = 1100,
                .panel_height = 620},

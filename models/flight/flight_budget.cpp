@@ -53,7 +53,9 @@ FlightBudget flight_budget(const Launch& launch, const Ball& ball, const FlightC
                            const FlightOptions& options, const std::vector<LaunchError>& errors,
                            const std::vector<FlightLaw>& others) {
   FlightBudget out;
-  out.value = answers(fly(launch, ball, conditions, {.tolerance = options.tolerance}));
+  const Flight flight = fly(launch, ball, conditions, {.tolerance = options.tolerance});
+  out.value = answers(flight);
+  out.outside = flight.outside;
   out.numerical =
       (answers(fly(launch, ball, conditions, {.tolerance = 1e-4 * options.tolerance})) - out.value).cwiseAbs();
   FlightAnswers total = FlightAnswers::Zero();

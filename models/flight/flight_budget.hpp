@@ -25,6 +25,7 @@ FlightAnswers answers(const Flight& flight);
 
 struct FlightBudget {
   FlightAnswers value, numerical;     ///< with the asked tolerance, and what a ten-thousandth of it changes
+  double outside = 0;                 ///< share of the time that the law's range does not cover
   std::vector<FlightAnswers> launch;  ///< standard deviation of each source, by the flight's derivative
   FlightAnswers launch_total;
   /// Standard deviation by the law's own coefficients, where it came with their covariance.
