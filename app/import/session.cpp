@@ -22,6 +22,7 @@ namespace fs = std::filesystem;
 /// Whether a cell's comma (1) or its point (-1) is the decimal one; 0 where it may as well part thousands, or has none.
 int decimal_of(const std::string& cell) {
   const std::string text = figure_of(cell);
+  if (text.find_first_of("0123456789") == text.npos) return 0;  // `Std.-Abw.`
   const auto point = text.rfind('.'), comma = text.rfind(',');
   constexpr auto none = std::string::npos;
   if (point == none && comma == none) return 0;
@@ -480,8 +481,9 @@ class Reading {
           const double other = out.median / si_of(given) * u.si;
           if (other >= q.low && other <= q.high) reads += (reads.empty() ? "" : " or ") + std::string(u.suffix);
         }
-      throw fail(fmt::format(": the median {:.4g} {} is no {} ({:.3g} to {:.3g} in SI){}; say --column '{}={}_UNIT'",
-                             out.median / si_of(given), given, q.name, q.low, q.high,
+      throw fail(fmt::format(": the median {:.4g} {} is no {} (allowed: {}){}; say --column '{}={}_UNIT'",
+                             out.median / si_of(given), given, q.name,
+                             Range{q.low, q.high}.allowed(Unit{given, *dimension_of(given), si_of(given)}),
                              reads.empty() ? "" : ": it reads like " + reads, out.header, q.name));
     }
     return out;

@@ -306,11 +306,13 @@ bool is_date(const std::string& cell) {
   return numbers >= 2 || longest >= 4;
 }
 
-/// Whether most cells of a column are dates.
-bool dated(const std::vector<Row>& rows, std::size_t column) {
+/// Whether most cells of a column are dates. Summaries do not count: of a few shots a block they may be as many.
+bool dated(const std::vector<Row>& rows, std::size_t column, const Dictionary& d) {
   std::size_t cells = 0, dates = 0;
   for (const Row& row : rows)
-    if (column < row.size() && !row[column].empty()) ++cells, dates += is_date(row[column]);
+    if (column < row.size() && !row[column].empty() &&
+        (has_digit(row[column]) || !d.begins_or_ends("summary", row[column])))
+      ++cells, dates += is_date(row[column]);
   return 2 * dates > cells;
 }
 
@@ -322,7 +324,7 @@ void take_shots(Sheet& sheet, const Dictionary& d, const fs::path& file) {
     if (const std::string named = club_heading(row, d); d.club(named)) club = named;
   std::vector<bool> dates;
   for (std::size_t c = 0; c < width; ++c)
-    dates.push_back(d.bookkeeping_of(sheet.names[c]) == "session" && dated(sheet.rows, c));
+    dates.push_back(d.bookkeeping_of(sheet.names[c]) == "session" && dated(sheet.rows, c, d));
   std::vector<Row> shots;
   Row clubs;
   for (Row& row : sheet.rows) {

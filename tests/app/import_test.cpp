@@ -197,6 +197,9 @@ TEST(Import, SaysWhatItCannotRead) {
   refuse("Club,Ball Speed (mph),Club Speed (mph),Launch Angle,Spin Rate,Impact Lateral (mm)\n7i,115,82,16,6400,3 R\n",
          "", "'3 R' is not a number");
   refuse("{\"a\": ", "", "broken JSON");
+  // The range stands in the unit of the value.
+  refuse(head + "7i,115,82,16,6.5,22\n", "--units imperial",
+         "6.5 rpm is no spin_rate (allowed: 381.972 to 15278.9 rpm)");
   const auto o = command("import '" + (dir / "nowhere.csv").string() + "' --out '" + (dir / "case").string() + "'");
   EXPECT_EQ(o.status, 2);
 }
@@ -546,6 +549,29 @@ INSTANTIATE_TEST_SUITE_P(
                "(mm toe-/heel+)\n7i,115,82,16,1.5,6400,5 Toe\n7i,116,82,16,-1.5,6500,-4\n",
                "",
                {{"azimuth_deg", {1.5, -1.5}}, {"impact_toe_mm", {5, 4}}},
+               {}},
+        Layout{"AsManySummariesAsShots",
+               "Date,Club,Club Speed (mph),Ball Speed (mph),Launch Angle (deg),Spin Rate (rpm),Dyn. Loft (deg)\n"
+               "2024-05-01,7 Iron,82.1,112.0,16.4,6500,22.4\n2024-05-01,7 Iron,81.7,111.4,16.8,6600,22.9\n"
+               "Average,7 Iron,81.9,111.7,16.6,6550,22.6\nStd. Dev.,7 Iron,0.3,0.4,0.3,70,0.3\n"
+               "2024-05-01,8 Iron,81.1,109.0,18.4,7500,26.4\n2024-05-01,8 Iron,80.7,108.4,18.8,7600,26.9\n"
+               "Average,8 Iron,80.9,108.7,18.6,7550,26.6\nStd. Dev.,8 Iron,0.3,0.4,0.3,70,0.3\n",
+               "",
+               {{"club_speed_mph", {82.1, 81.7, 81.1, 80.7}}},
+               {"4 summary rows"}},
+        Layout{
+            "AsManySummariesAsShotsInGerman",
+            "Datum;Schlägertyp;Ballgeschwindigkeit (km/h);Schlägerkopfgeschwindigkeit (km/h);Abflugwinkel;Gesamtspin\n"
+            "01.05.2024;Eisen 7;180,2;132,1;16,2;6.512\n01.05.2024;Eisen 7;179,8;131,9;16,4;6.602\n"
+            "Durchschnitt;;180,0;132,0;16,3;6.557\nStd.-Abw.;;0,2;0,1;0,1;45\n",
+            "",
+            {{"spin_rate_rpm", {6512, 6602}}, {"ball_speed_kmh", {180.2, 179.8}}},
+            {"2 summary rows"}},
+        Layout{"APointInAWordIsNoDecimalPoint",
+               "Schlägertyp;Ballgeschwindigkeit (km/h);Schlägerkopfgeschwindigkeit (km/h);Abflugwinkel;Gesamtspin;Ort\n"
+               "Eisen 7;180,2;132,1;16,2;6.512;St.-And.\nEisen 7;179,8;131,9;16,4;6.602;St.-And.\n",
+               "",
+               {{"spin_rate_rpm", {6512, 6602}}},
                {}},
         Layout{"SignTurnedByHand",
                "Club,Ball Speed (mph),Club Speed (mph),Launch Angle,Spin Rate,Dynamic Loft,Strike\n"
