@@ -695,9 +695,11 @@ class Reading {
     Understood *club = find("club_speed"), *ball = find("ball_speed");
     for (const auto& [u, what] : {std::pair{ball, "ball"}, {club, "club"}}) {
       if (u) continue;
-      std::string empty;  // the file has such a column, and nothing in it
-      for (const std::string& n : out_.sheet.names)
-        if (const MonitorQuantity* q = d_.quantity_of(n); q && q->name == std::string(what) + "_speed") empty = n;
+      std::string empty;                              // the file has such a column, and nothing in it
+      for (std::size_t c = 0; c < role_.size(); ++c)  // `Club` may hold names
+        if (const MonitorQuantity* q = d_.quantity_of(out_.sheet.names[c]);
+            q && q->name == std::string(what) + "_speed" && role_[c].empty())
+          empty = out_.sheet.names[c];
       if (!empty.empty())
         throw InputError(
             fmt::format("{}: column '{}' is empty: without the speed of the {} there is no blow to compute",

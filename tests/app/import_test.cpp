@@ -200,6 +200,9 @@ TEST(Import, SaysWhatItCannotRead) {
   // The range stands in the unit of the value.
   refuse(head + "7i,115,82,16,6.5,22\n", "--units imperial",
          "6.5 rpm is no spin_rate (allowed: 381.972 to 15278.9 rpm)");
+  // Words in a column of clubs make it no empty column of their speed.
+  refuse("club,ball_speed_mph,launch_angle_deg,spin_rpm\n7i,112,16,6500\n8i,111,16.5,6600\n", "",
+         "no column of club speed; --column 'header=club_speed_mph'");
   const auto o = command("import '" + (dir / "nowhere.csv").string() + "' --out '" + (dir / "case").string() + "'");
   EXPECT_EQ(o.status, 2);
 }
