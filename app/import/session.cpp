@@ -736,6 +736,16 @@ class Reading {
           out_.file.string(), out_.carry.header, *ratio, said(*ball), ball->header, out_.carry.header));
   }
 
+  /// The header of a column that has no role and whose cells are clubs, by more than their numbers.
+  std::string looks_like_clubs() const {
+    for (std::size_t c = 0; c < role_.size(); ++c)
+      if (role_[c].empty() && !out_.sheet.names[c].empty() && std::ranges::all_of(out_.sheet.rows, [&](const Row& row) {
+            return d_.club(row[c]) && !plain_number(row[c]);
+          }))
+        return out_.sheet.names[c];
+    return "header";
+  }
+
   /// What the loop needs and the file lacks comes from the clubs' nominal figures, said as such.
   void add_nominal(const std::string& club_of_file) {
     const Understood* clubs = find("club");
@@ -755,7 +765,8 @@ class Reading {
             "{}: {} is not in the file, and no club is known to take it from ({}); add a column, --club NAME "
             "where the file names none, or a [[club]] to --dictionary",
             out_.file.string(), option,
-            clubs ? fmt::format("{}: '{}'", clubs->header, clubs->cells.front()) : "no column of clubs"));
+            clubs ? fmt::format("{}: '{}'", clubs->header, clubs->cells.front())
+                  : fmt::format("no column of clubs; --column '{}=club' names one", looks_like_clubs())));
       return u;
     };
     if (!find("dynamic_loft")) {

@@ -234,9 +234,27 @@ Sheet read_json(const std::string& text, const fs::path& file, const Dictionary&
   return sheet;
 }
 
+bool is_known(const Dictionary& d, const std::string& name) {
+  return d.quantity_of(name) || !d.bookkeeping_of(name).empty();
+}
+
+/// Different ones: a row of groups says `Ball` above each of the ball's columns.
 std::size_t known_cells(const Dictionary& d, const Row& row) {
-  return std::size_t(std::ranges::count_if(
-      row, [&](const std::string& c) { return d.quantity_of(c) || !d.bookkeeping_of(c).empty(); }));
+  return std::size_t(std::ranges::count_if(std::set<std::string>(row.begin(), row.end()),
+                                           [&](const std::string& c) { return is_known(d, c); }));
+}
+
+/// Groups in the row above a header, each over its own columns and those right of it without one: `Speed` below `Ball`
+/// is `Ball Speed`. A name that is known and stands once needs no group, and none makes a name of a blank.
+void name_by_groups(Row& names, const Row& groups, const Dictionary& d) {
+  const Row alone = names;
+  std::string group;
+  for (std::size_t c = 0; c < std::min(names.size(), groups.size()); ++c) {
+    if (!groups[c].empty()) group = groups[c];
+    const std::string both = group + " " + alone[c];
+    const bool clear = plain(alone[c]).empty() || (is_known(d, alone[c]) && std::ranges::count(alone, alone[c]) == 1);
+    if (!clear && is_known(d, both)) names[c] = both;
+  }
 }
 
 /// What an unknown file's widest rows hold, as options to fill in.
@@ -316,8 +334,9 @@ bool dated(const std::vector<Row>& rows, std::size_t column, const Dictionary& d
   return 2 * dates > cells;
 }
 
-/// The rows below the header as shots: units, repeated headers, summaries and lines that name a club are taken out.
-void take_shots(Sheet& sheet, const Dictionary& d, const fs::path& file) {
+/// The rows below the header, which is given as it stands, as shots: units, repeated headers, summaries and lines that
+/// name a club are taken out.
+void take_shots(Sheet& sheet, const Row& header, const Dictionary& d, const fs::path& file) {
   const std::size_t width = sheet.names.size();
   std::string club;
   for (const Row& row : sheet.before)
@@ -329,7 +348,7 @@ void take_shots(Sheet& sheet, const Dictionary& d, const fs::path& file) {
   Row clubs;
   for (Row& row : sheet.rows) {
     row.resize(std::max(width, row.size()));
-    if (std::ranges::equal(row.begin(), row.begin() + long(width), sheet.names.begin(), sheet.names.end())) {
+    if (std::ranges::equal(row.begin(), row.begin() + long(width), header.begin(), header.begin() + long(width))) {
       ++sheet.headers_again;
       continue;
     }
@@ -395,16 +414,20 @@ void take_shots(Sheet& sheet, const Dictionary& d, const fs::path& file) {
 
 Sheet read_table(std::string text, const Dictionary& d, const fs::path& file) {
   Sheet best;
+  Row header;
   std::size_t most = 1;
   if (text.starts_with("sep=") || text.starts_with("SEP=")) text.erase(0, text.find('\n') + 1);
   for (const char delimiter : {',', ';', '\t', '|'}) {
     const std::vector<Row> rows = split(text, delimiter);
     for (std::size_t h = 0; h < std::min<std::size_t>(rows.size(), 30); ++h) {
-      const std::size_t known = known_cells(d, rows[h]);
+      Row names = rows[h];
+      if (h > 0 && !is_row_of_units(names)) name_by_groups(names, rows[h - 1], d);
+      const std::size_t known = known_cells(d, names);
       if (known <= most) continue;
       most = known;
       best = {};
-      best.names = rows[h];
+      best.names = std::move(names);
+      header = rows[h];
       best.before.assign(rows.begin(), rows.begin() + long(h));
       best.delimiter = delimiter == '\t' ? "tab" : std::string(1, delimiter);
       for (const Row& row : best.before)
@@ -422,7 +445,7 @@ Sheet read_table(std::string text, const Dictionary& d, const fs::path& file) {
   }
   while (!best.names.empty() && best.names.back().empty()) best.names.pop_back();
   check_size(file, best.names.size(), best.rows.size());
-  take_shots(best, d, file);
+  take_shots(best, header, d, file);
   return best;
 }
 

@@ -203,6 +203,8 @@ TEST(Import, SaysWhatItCannotRead) {
   // Words in a column of clubs make it no empty column of their speed.
   refuse("club,ball_speed_mph,launch_angle_deg,spin_rpm\n7i,112,16,6500\n8i,111,16.5,6600\n", "",
          "no column of club speed; --column 'header=club_speed_mph'");
+  refuse("#,Name,Ball Speed (mph),Club Speed (mph),Launch Angle\n1,7i,115,82,16\n2,8i,112,81,18\n", "",
+         "no column of clubs; --column 'Name=club' names one");
   const auto o = command("import '" + (dir / "nowhere.csv").string() + "' --out '" + (dir / "case").string() + "'");
   EXPECT_EQ(o.status, 2);
 }
@@ -576,6 +578,28 @@ INSTANTIATE_TEST_SUITE_P(
                "",
                {{"spin_rate_rpm", {6512, 6602}}},
                {}},
+        Layout{
+            "GroupsAboveEachName",
+            "Ball,Ball,Ball,Ball,Club,Club,Club\nSpeed,Launch Angle,Spin,Direction,Speed,Path,AoA\n"
+            "mph,deg,rpm,deg,mph,deg,deg\n112.1,16.5,6500,1.2 L,82.1,0.5 R,-3.1\n111.5,16.9,6600,0.2 R,81.6,0.7 "
+            "R,-3.3\n",
+            "--club 7i",
+            {{"ball_speed_mph", {112.1, 111.5}}, {"club_speed_mph", {82.1, 81.6}}, {"attack_angle_deg", {-3.1, -3.3}}},
+            {"Ball Speed"}},
+        Layout{"GroupsAsManyAsKnownNames",
+               "Ball,Ball,Club,Club\nSpeed (mph),Launch Angle,Speed (mph),Loft\n115,16,82,22\n116,16,82,22\n",
+               "--club 7i",
+               {{"ball_speed_mph", {115, 116}}, {"club_speed_mph", {82, 82}}, {"dynamic_loft_deg", {22, 22}}},
+               {}},
+        Layout{
+            "GroupsOnceAboveTheirNames",
+            "Ball,,,,Club,,\nSpeed (mph),Launch Angle (deg),Spin (rpm),Direction (deg),Speed (mph),Path (deg),Name\n"
+            "112.1,16.5,6500,1.2 L,82.1,0.5 R,7i\n"
+            "Speed (mph),Launch Angle (deg),Spin (rpm),Direction (deg),Speed (mph),Path (deg),Name\n"
+            "111.5,16.9,6600,0.2 R,81.6,0.7 R,8i\n",
+            "",
+            {{"ball_speed_mph", {112.1, 111.5}}, {"club_speed_mph", {82.1, 81.6}}, {"dynamic_loft_deg", {23.5, 26.5}}},
+            {"Club Name", "1 repeated header"}},
         Layout{"SignTurnedByHand",
                "Club,Ball Speed (mph),Club Speed (mph),Launch Angle,Spin Rate,Dynamic Loft,Strike\n"
                "7i,115,82,16,6400,22,3\n7i,116,82,16,6400,22,-4\n",
