@@ -25,7 +25,11 @@ namespace fs = std::filesystem;
 std::string read_utf8(const fs::path& file) {
   constexpr std::uintmax_t most = 64u << 20;
   std::error_code none;
-  if (!fs::is_regular_file(file, none)) throw InputError(fmt::format("{}: no such file", file.string()));
+  if (!fs::is_regular_file(file, none))
+    throw InputError(fmt::format("{}: {}", file.string(),
+                                 fs::is_directory(file, none) ? "a directory: the exported file itself is wanted"
+                                 : fs::exists(file, none)     ? "no regular file"
+                                                              : "no such file"));
   if (fs::file_size(file, none) > most)
     throw InputError(fmt::format("{}: more than 64 MiB: this is no launch monitor's session", file.string()));
   std::ifstream in(file, std::ios::binary);
@@ -454,8 +458,8 @@ Sheet read_table(std::string text, const Dictionary& d, const fs::path& file) {
 Sheet read_sheet(const fs::path& file, const Dictionary& d) {
   const std::string text = read_text(file);
   const auto first = text.find_first_not_of(" \t\r\n");
-  const bool json = first != std::string::npos &&
-                    (text[first] == '{' || (text[first] == '[' && text.find('{') != std::string::npos));
+  if (first == std::string::npos) throw InputError(fmt::format("{}: the file is empty", file.string()));
+  const bool json = text[first] == '{' || (text[first] == '[' && text.find('{') != std::string::npos);
   Sheet sheet = json ? read_json(text, file, d) : read_table(text, d, file);
   if (sheet.rows.empty()) throw InputError(fmt::format("{}: a header, but no shots", file.string()));
   for (const MonitorLayout& l : d.layouts())

@@ -183,7 +183,8 @@ TEST(Import, SaysWhatItCannotRead) {
     EXPECT_FALSE(fs::exists(dir / "case"));
   };
   const std::string head = "Club Type,Ball Speed,Club Speed,Launch Angle,Spin Rate,Dynamic Loft\n";
-  refuse("", "", "looks like the header");
+  refuse("", "", "a.csv: the file is empty");
+  refuse(" \n\n", "", "a.csv: the file is empty");
   refuse("a,b,c\n1,2,3\n", "", "looks like the header");
   refuse(head, "", "no shots");
   refuse(head + "7i,115,82,16,6400,22\n", "", "has no unit");
@@ -205,8 +206,11 @@ TEST(Import, SaysWhatItCannotRead) {
          "no column of club speed; --column 'header=club_speed_mph'");
   refuse("#,Name,Ball Speed (mph),Club Speed (mph),Launch Angle\n1,7i,115,82,16\n2,8i,112,81,18\n", "",
          "no column of clubs; --column 'Name=club' names one");
-  const auto o = command("import '" + (dir / "nowhere.csv").string() + "' --out '" + (dir / "case").string() + "'");
-  EXPECT_EQ(o.status, 2);
+  const auto refuse_file = [&](const fs::path& file, const std::string& why) {
+    test::expect_refused(command("import '" + file.string() + "' --out '" + (dir / "case").string() + "'"), why);
+  };
+  refuse_file(dir / "nowhere.csv", "no such file");
+  refuse_file(dir, "a directory: the exported file itself is wanted");
 }
 
 /// A file of one layout: its text, and what its shots must be in our units and signs.
