@@ -29,16 +29,11 @@ std::string plain(std::string_view text) {
   return out;
 }
 
-namespace {
-
-/// As headers are compared: `FaceToTarget` is `face to target`.
 std::string letters(std::string_view header) {
   std::string out = plain(header);
   std::erase(out, ' ');
   return out;
 }
-
-}  // namespace
 
 bool names_a_hand(const std::string& words) {
   const std::string apart = ' ' + words + ' ';

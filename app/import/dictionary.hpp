@@ -81,4 +81,7 @@ bool names_a_hand(const std::string& words);
 /// Lower case, without what stands in brackets, single blanks for punctuation.
 std::string plain(std::string_view text);
 
+/// As headers are compared: `FaceToTarget` is `face to target`.
+std::string letters(std::string_view header);
+
 }  // namespace hosel::app

@@ -229,16 +229,21 @@ void import_shots(const ImportOptions& o) {
   if (!o.units.empty() && o.units != "imperial" && o.units != "metric") throw InputError("--units: imperial or metric");
   const ByHand by_hand = read_by_hand(o, d);
   const bool several = o.files.size() > 1;
-  std::vector<Session> sessions;
+  std::vector<Sheet> sheets;
   std::error_code none;
-  for (const fs::path& file : o.files) {
-    for (const Session& other : sessions)
-      if (fs::equivalent(file, other.file, none))
-        throw InputError(fmt::format("{}: given twice; its shots would count twice", file.string()));
+  for (auto file = o.files.begin(); file != o.files.end(); ++file) {
+    if (std::any_of(o.files.begin(), file, [&](const fs::path& other) { return fs::equivalent(*file, other, none); }))
+      throw InputError(fmt::format("{}: given twice; its shots would count twice", file->string()));
+    sheets.push_back(read_sheet(*file, d));
+  }
+  check_headers(o, by_hand, sheets);
+  std::vector<Session> sessions;
+  for (std::size_t k = 0; k < o.files.size(); ++k) {
+    const fs::path& file = o.files[k];
     // An export of one club is often called by its name.
     const std::string stem = file.stem().string();
     const bool named = several && o.club.empty() && d.club(stem);
-    sessions.push_back(understand(file, named ? stem : o.club, o, d, by_hand));
+    sessions.push_back(understand(file, std::move(sheets[k]), named ? stem : o.club, o, d, by_hand));
   }
   if (several)
     for (Session& s : sessions) {

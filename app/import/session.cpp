@@ -101,6 +101,9 @@ std::optional<bool> yes_or_no(const std::string& cell) {
 /// A header as a person copies it.
 std::string copied(const std::string& header) { return lower(trimmed(header)); }
 
+/// Of a header in --column: by its unit as well, where it has one: `SIDE (deg)` beside `SIDE (rpm)`.
+std::string header_key(const std::string& header) { return unit_in(header).empty() ? plain(header) : copied(header); }
+
 /// Face minus path under the name of a place on the face, as one connector writes it: nine cells in ten agree.
 bool is_face_to_path(const Understood& u, const Understood* face, const Understood* path) {
   if (!face || !path || !face->filled || !path->filled) return false;
@@ -127,10 +130,10 @@ double carry_of(double speed, double launch, double spin) {
 /// One file being understood: each step reads what the steps before it found.
 class Reading {
  public:
-  Reading(const fs::path& from, const ImportOptions& o, const Dictionary& d, const ByHand& by_hand)
+  Reading(const fs::path& from, Sheet sheet, const ImportOptions& o, const Dictionary& d, const ByHand& by_hand)
       : o_(o), d_(d), by_hand_(by_hand) {
     out_.file = from;
-    out_.sheet = read_sheet(from, d);
+    out_.sheet = std::move(sheet);
     family_ = !o.units.empty() ? o.units : out_.sheet.family;
   }
 
@@ -811,16 +814,14 @@ const std::string* ByHand::of(const std::string& header, const Row& headers) con
 ByHand read_by_hand(const ImportOptions& o, Dictionary& d) {
   ByHand out;
   auto& [by_hand, turned] = out;
-  // By its unit as well, where it has one: `SIDE (deg)` beside `SIDE (rpm)`.
-  const auto key = [](const std::string& header) { return unit_in(header).empty() ? plain(header) : copied(header); };
   for (const std::string& c : o.columns) {
     const auto at = c.rfind('=');
     if (at == std::string::npos || at == 0)
       throw InputError(fmt::format("--column '{}': header=quantity_unit is wanted", c));
     const std::string header = c.substr(0, at);
     std::string name = c.substr(at + 1);
-    if (name.starts_with('-')) turned.insert(key(header)), name.erase(0, 1);
-    by_hand[key(header)] = name;
+    if (name.starts_with('-')) turned.insert(header_key(header)), name.erase(0, 1);
+    by_hand[header_key(header)] = name;
     if (name.empty()) {
       d.learn(header, "");
       continue;
@@ -828,7 +829,7 @@ ByHand read_by_hand(const ImportOptions& o, Dictionary& d) {
     const std::vector<std::string> roles = d.roles();
     if (std::ranges::count(roles, name)) {
       d.learn(header, name);
-      by_hand.erase(key(header));
+      by_hand.erase(header_key(header));
       continue;
     }
     const SplitName part = split_unit(name);
@@ -836,9 +837,36 @@ ByHand read_by_hand(const ImportOptions& o, Dictionary& d) {
     if (!part.unit || !std::ranges::count(known, part.stem))
       throw InputError(fmt::format("--column '{}': no such quantity with a unit, nor {}; quantities: {}", c,
                                    fmt::join(roles, ", "), fmt::join(known, ", ")));
+    if (const auto wanted = dimension_of(d.quantity(part.stem)->metric); part.unit->dimension != wanted)
+      throw InputError(fmt::format("--column '{}': '{}' is a unit of {}, {} wants one of {} ({}_{})", c,
+                                   part.unit->suffix, hosel::name(part.unit->dimension), part.stem,
+                                   hosel::name(*wanted), part.stem, d.quantity(part.stem)->metric));
     d.learn(header, part.stem);
   }
   return out;
+}
+
+void check_headers(const ImportOptions& o, const ByHand& by_hand, const std::vector<Sheet>& sheets) {
+  std::vector<std::string> headers;
+  for (const Sheet& sheet : sheets) headers.insert(headers.end(), sheet.names.begin(), sheet.names.end());
+  const auto check = [&](const std::string& option, const std::string& said, const std::string& header,
+                         const auto& is_it) {
+    for (const Sheet& sheet : sheets)
+      if (std::ranges::any_of(sheet.names, [&](const std::string& n) { return is_it(n, sheet.names); })) return;
+    throw InputError(
+        fmt::format("{} '{}': no column '{}'{}", option, said, header,
+                    or_nearest(header, headers, fmt::format("; there are: {}", fmt::join(headers, ", ")))));
+  };
+  for (const std::string& c : o.columns) {
+    const std::string header = c.substr(0, c.rfind('='));
+    const auto at = by_hand.quantity.find(header_key(header));
+    check("--column", c, header, [&](const std::string& name, const Row& names) {
+      return at == by_hand.quantity.end() || at->second.empty() ? letters(name) == letters(header)
+                                                                : by_hand.of(name, names) == &at->second;
+    });
+  }
+  for (const std::string& k : o.keep)
+    check("--keep", k, k, [&](const std::string& name, const Row&) { return plain(name) == plain(k); });
 }
 
 Understood* Session::find(std::string_view stem) {
@@ -855,9 +883,9 @@ void count_again(Understood& u) {
   u.median = loop::median(values);
 }
 
-Session understand(const fs::path& from, const std::string& club, const ImportOptions& options,
+Session understand(const fs::path& from, Sheet sheet, const std::string& club, const ImportOptions& options,
                    const Dictionary& dictionary, const ByHand& by_hand) {
-  return Reading(from, options, dictionary, by_hand).run(club);
+  return Reading(from, std::move(sheet), options, dictionary, by_hand).run(club);
 }
 
 }  // namespace hosel::app

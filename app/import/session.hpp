@@ -38,6 +38,9 @@ struct ByHand {
 /// Reads --column and teaches the dictionary what it says.
 ByHand read_by_hand(const ImportOptions& options, Dictionary& dictionary);
 
+/// Every header that --column and --keep name must be that of a column in a file at least.
+void check_headers(const ImportOptions& options, const ByHand& by_hand, const std::vector<Sheet>& sheets);
+
 /// What one file says, or several together.
 struct Session {
   std::filesystem::path file;
@@ -52,9 +55,10 @@ struct Session {
   Understood* find(std::string_view stem);
 };
 
-/// `club`: of the shots, where the file names none. Throws InputError in one sentence.
-Session understand(const std::filesystem::path& from, const std::string& club, const ImportOptions& options,
-                   const Dictionary& dictionary, const ByHand& by_hand);
+/// What `sheet`, read from a file, says. `club`: of the shots, where the file names none. Throws InputError in one
+/// sentence.
+Session understand(const std::filesystem::path& from, Sheet sheet, const std::string& club,
+                   const ImportOptions& options, const Dictionary& dictionary, const ByHand& by_hand);
 
 /// Counts what stands in the cells of a quantity anew.
 void count_again(Understood& quantity);

@@ -213,6 +213,27 @@ TEST(Import, SaysWhatItCannotRead) {
   refuse_file(dir, "a directory: the exported file itself is wanted");
 }
 
+/// What is said by hand of a column that is not there, or cannot be so, is no silent nothing.
+TEST(Import, ByHandOnlyWhatIsThere) {
+  const fs::path dir = test::fresh_directory("import_by_hand_wrong");
+  const std::string text =
+      "Club,Ball Speed,Club Speed,Launch Angle,Spin Rate,Dynamic Loft,Lie,Side (deg)\n7i,115,82,16,6400,22,1,2\n";
+  const auto refuse = [&](const std::string& options, const std::string& why) {
+    test::expect_refused(import_text(dir, text, "--units imperial " + options), why);
+  };
+  refuse("--column 'Lei=attack_angle_deg'", "--column 'Lei=attack_angle_deg': no column 'Lei'; did you mean 'Lie'?");
+  refuse("--column 'Lei='", "no column 'Lei'; did you mean 'Lie'?");
+  refuse("--column 'Klub=club'", "no column 'Klub'; did you mean 'Club'?");
+  refuse("--column 'Lie (mm)=impact_toe_mm'", "no column 'Lie (mm)'");
+  refuse("--keep Lei", "--keep 'Lei': no column 'Lei'; did you mean 'Lie'?");
+  refuse("--keep Wetter", "no column 'Wetter'; there are: Club, Ball Speed, ");
+  refuse("--column 'Lie=attack_angle_mm'",
+         "'mm' is a unit of length, attack_angle wants one of angle (attack_angle_deg)");
+  const auto good = import_text(dir, text, "--units imperial --column 'lie=attack_angle_deg' --column 'Side (deg)='");
+  ASSERT_EQ(good.status, 0) << good.text;
+  EXPECT_TRUE(imported_shots(dir).find("attack_angle_deg"));
+}
+
 /// A file of one layout: its text, and what its shots must be in our units and signs.
 struct Layout {
   std::string name, text;
