@@ -50,12 +50,12 @@ std::vector<Index> rising_order(std::size_t n, const auto& of) {
   return places;
 }
 
-/// The upper of the two middle values where their number is even; 0 of none.
+/// The mean of the two middle values where their number is even; 0 of none.
 inline double median(std::vector<double> x) {
   if (x.empty()) return 0;
   const auto mid = x.begin() + std::ptrdiff_t(x.size() / 2);
   std::nth_element(x.begin(), mid, x.end());
-  return *mid;
+  return x.size() % 2 == 1 ? *mid : std::midpoint(*std::max_element(x.begin(), mid), *mid);
 }
 
 /// The standard deviation of normal values whose distances from their middle these are.

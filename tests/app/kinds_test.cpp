@@ -364,8 +364,8 @@ TEST(LandingTimes, WhatASiteAddsToParabolasIsFound) {
   EXPECT_NEAR(d.at("error_s").get<double>(), std::sqrt(2.0) * 0.02 / std::sqrt(40), 1e-6);
   EXPECT_NE(content(dir / "out" / "report.html").find("the balls at high land 0.250 s later than at low"),
             std::string::npos);
-  // Four shots of `high` are off by 1 s: each counts as the knee, and 36 tell the mean. About the upper of the two
-  // middle shots half of them lie at 0 and half at 0.04 s.
+  // Four shots of `high` are off by 1 s: each counts as the knee, and 36 tell the mean. They lie 0.02 s off the
+  // median, which is the middle of the two groups.
   for (const char* off : {"1", "-1"}) {
     std::string all;
     int row = 0;
@@ -384,7 +384,7 @@ TEST(LandingTimes, WhatASiteAddsToParabolasIsFound) {
     ASSERT_EQ(o.status, 0) << o.text;
     const auto strayed = nlohmann::json::parse(content(dir / "out/summary.json"))["sites"]["high"];
     ASSERT_EQ(strayed.at("shots"), 40);
-    const double knee = 1.5 * 1.4826 * 0.04;
+    const double knee = 1.5 * 1.4826 * 0.02;
     EXPECT_NEAR(strayed.at("measured_less_law_s").get<double>(), added, 1e-6);
     EXPECT_NEAR(strayed.at("error_s").get<double>(), std::sqrt(36 * 0.02 * 0.02 + 4 * knee * knee) / 36, 1e-6);
   }
