@@ -367,7 +367,7 @@ std::optional<NamedContact> named_contact(Table root) {
   if (root.has("delivery") && root.has("head") && !root.has("motion")) {
     Blow blow;
     blow.delivery = read_delivery_of(root);
-    loft = fmt::format("none of them saw this spin loft, {:.3g} deg (dynamic loft less attack angle of [delivery])",
+    loft = fmt::format("none of them saw this loft, a spin loft of {:.3g} deg (dynamic loft less attack angle)",
                        degrees(blow.delivery.dynamic_loft - blow.delivery.attack_angle));
     // A set that knows the case's face comes before one of the right loft alone.
     const std::string face = face_name(root);

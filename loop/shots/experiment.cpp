@@ -243,14 +243,15 @@ NextExperiment design(const ShotCase& c, const Problem& problem, const ShotModel
     for (const int i : rows) sum += model.sigma(i, ch) * std::sqrt(model.count(i));  // of a single shot
     noise[ch] = sum / double(rows.size());
   }
-  // Wanted: a = 4.8 on training rows to come; aim a little higher, since the plan itself rests on fits.
-  constexpr double wanted = 5.5 * 5.5;
+  // Aimed a little higher on training rows to come than is needed, since the plan itself rests on fits.
+  constexpr double needed = 4.8, wanted = 5.5 * 5.5;
   std::size_t single = 0;
   for (const int i : rows) single += std::size_t(model.count(i));
   const std::size_t most = std::max<std::size_t>(12, single * 3 / 2);
   std::vector<std::size_t> chosen;   // for all pairs together
   std::vector<std::size_t> partial;  // the most that shots can do for a pair that they do not part
-  std::vector<std::string> by_first, by_more, open, sensors, sentences;
+  std::vector<std::string> by_first, by_more, open, of_open, sensors, sentences;
+  double nearest = kInfinity, farthest = 0;  // of the open pairs, after more shots
   for (const Rivals& r : rivals(so_far)) {
     const std::vector<Fit> one = family(problem, r.a->fit, r.one, so_far.forms),
                            two = family(problem, r.b->fit, r.two, so_far.forms);
@@ -275,13 +276,16 @@ NextExperiment design(const ShotCase& c, const Problem& problem, const ShotModel
       more.push_back(best.first);
     }
     const double after = std::sqrt(apart.squared());
-    if (apart.squared() < 0.8 * wanted) {
+    if (after < needed) {
       const std::vector<std::string> of_pair = sensors_of({{r.one, r.two}}, c.own);
       for (const std::string& s : of_pair)
         if (!std::ranges::count(sensors, s)) sensors.push_back(s);
       if (after > before + 1 && partial.empty()) partial = more;
       open.push_back(
           fmt::format("{} from {} ({:.1f} now, {:.1f} after {} more shots)", r.one, r.two, before, after, more.size()));
+      for (const std::string& name : {r.one, r.two})
+        if (!std::ranges::count(of_open, name)) of_open.push_back(name);
+      nearest = std::min(nearest, after), farthest = std::max(farthest, after);
     } else {
       chosen.insert(chosen.end(), more.begin(), more.end());
       if (chosen.empty()) by_more.push_back(fmt::format("{} from {}", r.one, r.two));
@@ -291,15 +295,19 @@ NextExperiment design(const ShotCase& c, const Problem& problem, const ShotModel
     }
   }
   if (!by_first.empty())
-    sentences.push_back(fmt::format("Shots at the inputs below separate {}, in noise units; 4.8 are needed",
-                                    fmt::join(by_first, "; ")));
+    sentences.push_back(fmt::format("Shots at the inputs below separate {}, in noise units; {} are needed",
+                                    fmt::join(by_first, "; "), needed));
   if (!by_more.empty())
     sentences.push_back(fmt::format("More shots of the same kind separate {}", fmt::join(by_more, "; ")));
+  constexpr std::size_t most_pairs = 3;  // that are read one by one
   if (!open.empty())
     sentences.push_back(
-        fmt::format("Shots within this range do not separate {}, in noise units; 4.8 are needed. "
-                    "Measure {}",
-                    fmt::join(open, "; "), fmt::join(sensors, "; or ")));
+        (open.size() <= most_pairs
+             ? fmt::format("Shots within this range do not separate {}, in noise units", fmt::join(open, "; "))
+             : fmt::format("Shots within this range do not separate {} pairs of {}: {:.1f} to {:.1f} noise units after "
+                           "at most {} more shots",
+                           open.size(), fmt::join(of_open, ", "), nearest, farthest, most)) +
+        fmt::format("; {} are needed. Measure {}", needed, fmt::join(sensors, "; or ")));
   if (chosen.empty()) chosen = partial;
   for (const std::size_t k : chosen) {
     DesignedShot shot;
