@@ -191,6 +191,23 @@ class Contest {
   std::vector<Separation> each_;
 };
 
+/// Pairs of rivals and how far apart they will be: one by one, of more than three their names and the range.
+struct Pairs {
+  std::vector<std::string> all, names;
+  double nearest = kInfinity, farthest = 0;
+
+  void add(const Rivals& r, double after, const std::string& how) {
+    all.push_back(fmt::format("{} from {} ({})", r.one, r.two, how));
+    for (const std::string& name : {r.one, r.two})
+      if (!std::ranges::count(names, name)) names.push_back(name);
+    nearest = std::min(nearest, after), farthest = std::max(farthest, after);
+  }
+  std::string told() const {
+    if (all.size() <= 3) return fmt::format("{}", fmt::join(all, "; "));
+    return fmt::format("{} pairs of {} ({:.1f} to {:.1f} then)", all.size(), fmt::join(names, ", "), nearest, farthest);
+  }
+};
+
 }  // namespace
 
 NextExperiment design(const ShotCase& c, const Problem& problem, const ShotModel& model, const std::vector<int>& rows,
@@ -250,8 +267,8 @@ NextExperiment design(const ShotCase& c, const Problem& problem, const ShotModel
   const std::size_t most = std::max<std::size_t>(12, single * 3 / 2);
   std::vector<std::size_t> chosen;   // for all pairs together
   std::vector<std::size_t> partial;  // the most that shots can do for a pair that they do not part
-  std::vector<std::string> by_first, by_more, open, of_open, sensors, sentences;
-  double nearest = kInfinity, farthest = 0;  // of the open pairs, after more shots
+  Pairs by_first, open;
+  std::vector<std::string> by_more, sensors, sentences;
   for (const Rivals& r : rivals(so_far)) {
     const std::vector<Fit> one = family(problem, r.a->fit, r.one, so_far.forms),
                            two = family(problem, r.b->fit, r.two, so_far.forms);
@@ -281,33 +298,23 @@ NextExperiment design(const ShotCase& c, const Problem& problem, const ShotModel
       for (const std::string& s : of_pair)
         if (!std::ranges::count(sensors, s)) sensors.push_back(s);
       if (after > before + 1 && partial.empty()) partial = more;
-      open.push_back(
-          fmt::format("{} from {} ({:.1f} now, {:.1f} after {} more shots)", r.one, r.two, before, after, more.size()));
-      for (const std::string& name : {r.one, r.two})
-        if (!std::ranges::count(of_open, name)) of_open.push_back(name);
-      nearest = std::min(nearest, after), farthest = std::max(farthest, after);
+      open.add(r, after, fmt::format("{:.1f} now, {:.1f} after {} more shots", before, after, more.size()));
     } else {
       chosen.insert(chosen.end(), more.begin(), more.end());
       if (chosen.empty()) by_more.push_back(fmt::format("{} from {}", r.one, r.two));
       else
-        by_first.push_back(fmt::format("{} from {} by the first {} ({:.1f} now, {:.1f} then)", r.one, r.two,
-                                       chosen.size(), before, after));
+        by_first.add(r, after, fmt::format("by the first {}, {:.1f} now, {:.1f} then", chosen.size(), before, after));
     }
   }
-  if (!by_first.empty())
-    sentences.push_back(fmt::format("Shots at the inputs below separate {}, in noise units; {} are needed",
-                                    fmt::join(by_first, "; "), needed));
+  if (!by_first.all.empty())
+    sentences.push_back(fmt::format("{} shots at the inputs below separate {}, in noise units; {} are needed",
+                                    chosen.size(), by_first.told(), needed));
   if (!by_more.empty())
     sentences.push_back(fmt::format("More shots of the same kind separate {}", fmt::join(by_more, "; ")));
-  constexpr std::size_t most_pairs = 3;  // that are read one by one
-  if (!open.empty())
+  if (!open.all.empty())
     sentences.push_back(
-        (open.size() <= most_pairs
-             ? fmt::format("Shots within this range do not separate {}, in noise units", fmt::join(open, "; "))
-             : fmt::format("Shots within this range do not separate {} pairs of {}: {:.1f} to {:.1f} noise units after "
-                           "at most {} more shots",
-                           open.size(), fmt::join(of_open, ", "), nearest, farthest, most)) +
-        fmt::format("; {} are needed. Measure {}", needed, fmt::join(sensors, "; or ")));
+        fmt::format("Shots within this range do not separate {}, in noise units; {} are needed. Measure {}",
+                    open.told(), needed, fmt::join(sensors, "; or ")));
   if (chosen.empty()) chosen = partial;
   for (const std::size_t k : chosen) {
     DesignedShot shot;
