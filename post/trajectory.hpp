@@ -12,7 +12,7 @@ struct NamedFlight {
   ShotFlight shot;  ///< with its path
 };
 
-/// Side view (height over distance) and, unless all fly straight, top view (right of the target over distance), a line
+/// Side view (height over distance) and, unless all fly straight, top view (left of the target over distance), a line
 /// a flight.
 Figure trajectory_figure(std::string title, const std::vector<NamedFlight>& flights);
 

@@ -428,9 +428,10 @@ class StudyJob final : public PointJob {
     if (asked.swung && !asked.swung->motion.present) motion_ = asked.swung->motion.file;
     if (asked.swung && conditions_.matched_launch) root.fail("matched_launch", "the swing says the loft");
     if (!asked.models.front().empty() && std::isfinite(asked.blow.club.head.mass))
-      if (const std::string sentence = off_the_face(asked.blow); !sentence.empty() && off_face_++ == 0)
-        first_off_face_ = (table_.design.said(d).empty() ? "" : fmt::format(", {}", table_.design.said(d))) + ": " +
-                          sentence;
+      if (const std::string sentence = off_the_face(asked.blow); !sentence.empty() && off_face_++ == 0) {
+        const std::string point = table_.design.said(d);
+        first_off_face_ = fmt::format("{}{}: {}", point.empty() ? "" : ", ", point, sentence);
+      }
     table_.asked.insert(table_.asked.end(), asked.models.begin(), asked.models.end());
     leave_study_keys(one.root());
     one.finish();

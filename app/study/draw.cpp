@@ -104,11 +104,6 @@ std::string spoken_series(const StudyTable& table, const StudySeries& s) {
   return table.models.size() > 1 ? post::label(table.outputs[s.output]) : s.spoken;
 }
 
-bool still(const StudySeries& s) {
-  const auto [low, mean, high] = s.spread();
-  return !(high - low > 1e-9 * std::max(std::abs(low), std::abs(high)));
-}
-
 std::string behind(std::string title, const std::string& rest) {
   return rest.empty() ? title : fmt::format("{}{}{}", title, title.empty() ? "" : "; ", rest);
 }
@@ -127,7 +122,7 @@ post::Series measured_at(const StudyTable& table, std::size_t output, F x) {
 std::optional<std::size_t> strongest(const StudyTable& table, std::size_t output, const StudyEffects& effects) {
   std::vector<double> share(effects.columns.size(), 0);
   for (std::size_t m = 0; m < table.models.size(); ++m)
-    if (const auto& of = effects.of[m * table.outputs.size() + output]; of && !still(table.at(m, output)))
+    if (const auto& of = effects.of[m * table.outputs.size() + output]; of)
       for (std::size_t f = 0; f < share.size(); ++f) share[f] += of->factors[f].share;
   const auto most = std::ranges::max_element(share);
   if (most == share.end() || !(*most > 0)) return {};
@@ -145,7 +140,7 @@ post::Figure lines(const StudyTable& table, const StudyView& view, const std::st
       if (const auto most = strongest(table, o, effects)) x = most;
     for (std::size_t m = 0; m < table.models.size(); ++m) {
       const StudySeries& s = table.at(m, o);
-      if (!x || view.numbers(*x).empty() || (sampled && still(s))) continue;
+      if (!x || view.numbers(*x).empty() || (sampled && s.constant())) continue;
       std::set<std::size_t> told, free = {*x};  // in a line's name; as they come
       std::size_t many = table.models.size();
       for (std::size_t c = 0; c < view.columns(); ++c) {

@@ -43,6 +43,13 @@ std::vector<StudyEmulator::Share> emulated(solvers::MainEffects& effects, const 
   return shares.together;
 }
 
+/// Of the variance, by one parameter at a time.
+double alone(const solvers::MainEffects& e) {
+  double share = 0;
+  for (const solvers::MainEffect& f : e.factors) share += f.share;
+  return share;
+}
+
 /// What can be said of the parameter that moves an answer most.
 enum class Leader { alone, together, combinations, correlated, unknown };
 
@@ -50,15 +57,10 @@ Leader leader(const StudyEffects& effects, std::size_t series) {
   constexpr double most = 0.5;  // of the variance: what is left could make any parameter the first
   const solvers::MainEffects& e = *effects.of[series];
   if (!e.separable) return Leader::correlated;
-  double alone = 0;
-  for (const solvers::MainEffect& f : e.factors) alone += f.share;
-  if (!effects.together[series].empty()) return alone < most ? Leader::together : Leader::alone;
-  if (e.full_factorial) return alone < most ? Leader::combinations : Leader::alone;
+  if (!effects.together[series].empty()) return alone(e) < most ? Leader::together : Leader::alone;
+  if (e.full_factorial) return alone(e) < most ? Leader::combinations : Leader::alone;
   return e.predicted < most ? Leader::unknown : Leader::alone;
 }
-
-/// Whether an answer prints as one number at all points.
-bool constant(const StudySeries::Spread& s) { return fmt::format("{:.4g}", s.low) == fmt::format("{:.4g}", s.high); }
 
 /// From the parameter that takes part in most of the variance to the one that takes part in least.
 std::vector<std::size_t> by_total(const StudyEffects& effects, std::size_t series) {
@@ -125,7 +127,7 @@ StudyEffects effects_of(const StudyTable& table) {
     out.of.emplace_back();
     out.emulators.push_back(StudyEmulator::of(table, k));
     out.together.emplace_back();
-    if (factors.size() < 2) continue;
+    if (factors.size() < 2 || s.constant()) continue;  // nothing moves it
     std::vector<solvers::EffectFactor> there = factors;
     std::vector<double> y;
     for (auto& f : there) f.x.clear();
@@ -144,6 +146,10 @@ StudyEffects effects_of(const StudyTable& table) {
 }
 
 std::string sentence(const StudyTable& table, const StudyEffects& effects, std::size_t series) {
+  const std::string& answer = table.series[series].spoken;
+  const StudySeries::Spread spread = table.series[series].spread();
+  if (effects.columns.size() > 1 && table.series[series].constant())
+    return fmt::format("{} is {:.4g} at every point.", capital(answer), spread.low);
   const auto& e = effects.of[series];
   if (!e) return {};
   const auto columns = table.design.columns();
@@ -158,9 +164,6 @@ std::string sentence(const StudyTable& table, const StudyEffects& effects, std::
     const solvers::MainEffect& f = e->factors[order[rank]];
     return of_variance(f, f.share);
   };
-  const std::string& answer = table.series[series].spoken;
-  const StudySeries::Spread spread = table.series[series].spread();
-  if (constant(spread)) return fmt::format("{} is {:.4g} at every point.", capital(answer), spread.low);
   switch (told) {
     case Leader::alone: break;
     case Leader::correlated:
@@ -203,10 +206,8 @@ std::string sentence(const StudyTable& table, const StudyEffects& effects, std::
       text += fmt::format(" With its interactions the first takes part in {} % ({} to {} %).", percent(all.value),
                           percent(all.low), percent(all.high));
   } else if (e->full_factorial) {  // its shares are exact: a point left out says nothing more
-    double alone = 0;
-    for (const solvers::MainEffect& f : e->factors) alone += f.share;
-    if (alone < 0.8)
-      text += fmt::format(" One parameter at a time makes {} % of it: the rest are interactions.", percent(alone));
+    if (alone(*e) < 0.8)
+      text += fmt::format(" One parameter at a time makes {} % of it: the rest are interactions.", percent(alone(*e)));
   } else if (e->predicted < 0.8)
     text += fmt::format(
         " One parameter at a time predicts {} % of it at points left out: the rest are interactions and "
@@ -242,7 +243,7 @@ void tell_effects(Output& out, const StudyTable& table, const StudyEffects& effe
     if (const auto& e = effects.emulators[s])
       summary["emulator"][series.name] = {
           {"points", e->points()}, {"rms_error", e->error()}, {"predicted", e->predicted()}};
-    if (!several || !effects.of[s] || constant(series.spread())) {
+    if (!several || !effects.of[s]) {
       if (several) row.insert(row.end(), {"-", "-"});
       if (emulated) row.push_back(off);
       continue;

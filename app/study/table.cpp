@@ -27,6 +27,11 @@ StudySeries::Spread StudySeries::spread() const {
   return s;
 }
 
+bool StudySeries::constant() const {
+  const auto [low, mean, high] = spread();
+  return std::isfinite(mean) && fmt::format("{:.4g}", low) == fmt::format("{:.4g}", high);
+}
+
 /// An entry in words. Which of several of one name is meant stands in the tables before it: "holds" of what?
 std::string StudyTable::spoken_entry(std::size_t output) const {
   const auto own = [](std::string entry) {

@@ -23,6 +23,7 @@ struct StudySeries {
     double low, mean, high;  ///< NaN where there is no answer at all
   };
   Spread spread() const;
+  bool constant() const;  ///< prints as one number at all points that have an answer
 };
 
 /// A design, what was asked at each of its points, and the answers: point = design point * models + model.

@@ -224,8 +224,6 @@ NextExperiment design(const ShotCase& c, const Problem& problem, const ShotModel
         return l->channel.empty() ? l->detail : l->channel + of_channel;
       };
       if (l->regressor == "constant") {
-        const std::string text = fmt::format("Check the zero of {} against another instrument: it is off in the mean",
-                                             l->channel.empty() ? "every channel" : l->channel);
         // What follows something else as well is no zero.
         for (const StructureMap* map : {&so_far.selection.after, &so_far.selection.before})
           for (const Finding& f : map->findings)
@@ -234,7 +232,8 @@ NextExperiment design(const ShotCase& c, const Problem& problem, const ShotModel
               return {.text = fmt::format("Change {} on purpose, keep everything else as it is, and repeat each "
                                           "setting: {} is off in the mean, and by how much follows it",
                                           f.regressor, l->channel)};
-        return {.text = text};
+        return {.text = fmt::format("Check the zero of {} against another instrument: it is off in the mean",
+                                    l->channel.empty() ? "every channel" : l->channel)};
       }
       if (l->regressor == "shot")
         return {.text = fmt::format("Repeat the first shots of the session at its end, in the same order: {}",

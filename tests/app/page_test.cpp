@@ -99,6 +99,8 @@ restitution_slope_s_per_m = 0.0
               72, 1e-6);
   EXPECT_TRUE(holds(page, "restitution</span><b>0.8000</b>"));
   EXPECT_TRUE(holds(page, "rebound speed</span><b>32.00 m/s</b>"));
+  EXPECT_FALSE(holds(page, "How far the ball goes")) << "of a ball that leaves a wall";
+  EXPECT_FALSE(holds(page, "nearer the toe"));
   EXPECT_TRUE(holds(page, "the ball rests before the blow and the wall moves"));
   EXPECT_FALSE(holds(page, "direction</span>"));
 }

@@ -1176,6 +1176,21 @@ TEST_F(Loop, AColumnMayBeReadInAnotherSenseOnAPartOfTheSession) {
   }
 }
 
+/// A spin that is off in the mean and by how high it was struck: no zero of the instrument is to be checked.
+TEST_F(Loop, WhatToMeasureNextIsWhatWouldTell) {
+  const auto off = [&](double mean, double per_mm) {
+    return run(case_of(changed(csv({.shots = 160}), "", [&](int, std::vector<std::string>& cells) {
+      const double high = std::stod(cells[kToeOffset + 1]);
+      cells[kBackspin] = fmt::format("{:.0f}", std::stod(cells[kBackspin]) + mean + per_mm * std::abs(high));
+    })));
+  };
+  const LoopResult both = off(1500, 60);
+  ASSERT_EQ(both.verdict, Verdict::unexplained) << sentence(both);
+  ASSERT_EQ(both.unexplained.front().regressor, "constant") << sentence(both);
+  EXPECT_EQ(both.next.text.find("Check the zero"), std::string::npos) << both.next.text;
+  EXPECT_NE(both.next.text.find("impact_high_mm"), std::string::npos) << both.next.text;
+}
+
 /// A recorded club speed that keeps a tenth of the one before: the residual follows the speed before.
 TEST_F(Loop, ARecordThatIsSmoothedIsToldAsSuch) {
   double shown = 45;

@@ -156,6 +156,11 @@ TEST(FlightInference, BudgetByTheLawsCovariance) {
   const models::FlightConditions c{.law = radar()};
   const auto budget = models::flight_budget(l, {}, c, {}, {}, {});
   ASSERT_TRUE(budget.law);
+  models::FlightLaw narrow = c.law;  // a range that this flight leaves
+  narrow.reynolds.low = 1.2e5;
+  const double left = models::flight_budget(l, {}, {.law = narrow}, {}, {}, {}).outside;
+  EXPECT_GT(left, 0.1);
+  EXPECT_NEAR(left, models::fly(l, {}, {.law = narrow}).outside, 1e-12);
   constexpr int n = models::kInferredCoefficients;
   const Eigen::Map<const Eigen::Matrix<double, n, n>> covariance(c.law.covariance.data());
   const Eigen::Matrix<double, n, n> L = covariance.llt().matrixL();

@@ -32,6 +32,18 @@ TEST(Table, WritesRfc4180WithEachColumnsOwnDigits) {
             "'=1+1,,3,\n");
 }
 
+TEST(Csv, AnotherSeparatorThanACommaIsNamed) {
+  const auto refused = [](const char* text) {
+    try {
+      parse_csv(text, "t");
+    } catch (const DataError& e) { return std::string(e.what()); }
+    return std::string();
+  };
+  EXPECT_NE(refused("a;b\n1,5;2\n").find("2 cells where the header has 1: a comma is what separates cells"),
+            std::string::npos);
+  EXPECT_EQ(refused("a\n1,5\n").find("a comma is what"), std::string::npos);
+}
+
 TEST(Csv, ANumberKeepsItsSignAndHasOne) {
   EXPECT_EQ(number("+5"), 5.0);
   EXPECT_EQ(number("1e-400"), 0.0);

@@ -152,7 +152,9 @@ class Launches(InFolder):
 
     def test_bad_input_is_named(self):
         model = hosel.Model("driver-toe", "rigid-eccentric")
-        for inputs, words in [({"club_sped_mph": 1.0}, "club_sped_mph"), ({"club_speed_deg": 1.0}, "club_speed_deg"),
+        for inputs, words in [({"club_sped_mph": 1.0}, "club_sped_mph"),
+                              ({"club_speed_deg": 1.0}, "'club_speed_deg' has no unit of speed: .*club_speed_mph"),
+                              ({"club_speed": 1.0}, "'club_speed' has no unit of speed: .*club_speed_mps"),
                               ({"dynamic_loft_deg": [10.0, 179.0]}, "blow 1")]:
             with self.assertRaisesRegex(ValueError, words):
                 model.launch(**inputs)
@@ -360,6 +362,8 @@ class Results(InFolder):
     def test_where_asks_for_what_a_column_holds(self):
         table = self.table("variant,x\n1,1\n2,2\n")
         self.assertEqual(list(table.where(variant=2)["x"]), [2])
+        with self.assertRaisesRegex(KeyError, "no column 'y' .there are variant, x"):
+            table["y"]
         with self.assertRaisesRegex(ValueError, "'variant' holds numbers"):
             table.where(variant="1")
         with self.assertRaisesRegex(ValueError, "takes one value, not 2"):
