@@ -305,7 +305,9 @@ void Beam::tangent(const State& s, const Weights& weights, TangentSink& sink) co
         if (tau > 0) strain += tau * strain_rate(p, g, rate);
         const Vec6 stress = g.stiffness * strain;
         const Vec3 n = stress.head<3>(), m = stress.tail<3>();
-        H.noalias() += (g.weight * material) * B.transpose() * (g.stiffness * B);
+        // Lazy: Eigen would pack products of this size for its cache.
+        const Eigen::Matrix<double, 6, 12> CB = (g.weight * material * g.stiffness).lazyProduct(B);
+        H.noalias() += B.transpose().lazyProduct(CB);
         if (weights.stiffness == 0) continue;
         const double w = g.weight * weights.stiffness;
         const Mat3 turn = p.turn.hessian(p.psi, n, p.dy) + p.curve.hessian(p.psi, m, p.dpsi);
@@ -325,8 +327,8 @@ void Beam::tangent(const State& s, const Weights& weights, TangentSink& sink) co
           }
         }
       }
-      const Mat12x18 HJ = H * J;
-      K.noalias() = J.transpose() * HJ;
+      const Mat12x18 HJ = H.lazyProduct(J);
+      K.noalias() = J.transpose().lazyProduct(HJ);
       if (weights.stiffness != 0)
         for (int a = 0; a < 2; ++a) {
           // What the residual changes because J does; gy and gpsi carry the weight already.

@@ -110,7 +110,9 @@ NewtonReport GeneralizedAlpha::attempt(double h) {
   trial_.time = state_.time + h;
   Vector a1;
   if (options_.predict_acceleration) {
-    if (earlier_a_.size() > 0) trial_.a += (h / last_step_) * (state_.a - earlier_a_);
+    // Through three states where steps are equal, else through two.
+    if (earliest_a_.size() > 0 && h == last_step_) trial_.a += 2 * state_.a - 3 * earlier_a_ + earliest_a_;
+    else if (earlier_a_.size() > 0) trial_.a += (h / last_step_) * (state_.a - earlier_a_);
     a1 = ((1 - af_) * trial_.a + af_ * state_.a - am_ * a0) / (1 - am_);
   } else {
     a1 = (1 - 0.5 / beta_) * a0;  // increment h v_n
@@ -133,9 +135,9 @@ NewtonReport GeneralizedAlpha::attempt(double h) {
     return tangent_.gather(trial_inertia_ + trial_force_);
   };
   const auto assemble = [&](double inertia) {
-    // With contact the factors are symmetric, and the exponential map's tangent would leave K not so: by a step's turn
-    // times the stiffest spring, more than the mass of a step where a shaft's sections are held. It refines little.
-    tangent_.assemble(system_, trial_, {1, to_v, inertia * to_a}, contact_ ? Vector() : increment_);
+    // Without the exponential map's tangent: by a step's turn it refines little and takes a second pass, and with
+    // contact it would leave the factors not symmetric.
+    tangent_.assemble(system_, trial_, {1, to_v, inertia * to_a});
     tangent_step_ = h;
     return tangent_.round_off(system_, trial_);
   };
@@ -191,6 +193,8 @@ void GeneralizedAlpha::accept(double h, const NewtonReport& report) {
   for (Index e : imposed_) imposed_work_ += 0.5 * (residual_[e] + trial_inertia_[e] + trial_force_[e]) * increment_[e];
   const double inertial_work = 0.5 * (inertia_ + trial_inertia_).dot(increment_);
   std::swap(state_, trial_);
+  if (!contact_ && h == last_step_) std::swap(earliest_a_, earlier_a_);
+  else earliest_a_.resize(0);
   std::swap(earlier_a_, trial_.a);
   auxiliary_ = trial_auxiliary_;
   residual_ = trial_inertia_ + trial_force_;
@@ -290,6 +294,7 @@ void GeneralizedAlpha::restore(const Checkpoint& saved) {
   external_before_ = saved.external_before;
   imposed_work_ = 0;
   earlier_a_.resize(0);
+  earliest_a_.resize(0);
   std::span<const double> history = saved.history;
   for (const auto& term : system_.terms) term->restore(history);
   if (!history.empty()) throw std::invalid_argument("the checkpoint is of another system");

@@ -25,8 +25,8 @@ struct GeneralizedAlphaOptions {
   double step_max = 0;    ///< the fixed step where no error tolerance is set [s]
   double step_min = 0;    ///< below this a failing step gives up [s]
   double step_first = 0;  ///< 0: step_max [s]
-  /// First guess of a step: accelerations go on as they changed in the last one, or (false) there are none: the better
-  /// guess where contact makes them jump.
+  /// First guess of a step: accelerations go on as they changed in the last one or two, or (false) there are none: the
+  /// better guess where contact makes them jump.
   bool predict_acceleration = true;
   double error_vector = 0;    ///< error allowed per step of a plain number [m]; inf: fixed steps
   double error_rotation = 0;  ///< of a rotation [rad]; inf: fixed steps
@@ -117,7 +117,7 @@ class GeneralizedAlpha {
   ContactNewton contact_newton_;  // instead, where some term is
   fem::State state_, trial_;
   Vector auxiliary_, trial_auxiliary_, increment_;
-  Vector earlier_a_;  // of the state before; empty at the start
+  Vector earlier_a_, earliest_a_;  // of the one and two states before, a step apart; empty at the start
   Vector inertia_, trial_inertia_, trial_force_, residual_;
   std::vector<Index> imposed_;
   double step_ = 0, last_step_ = 0, tangent_step_ = 0, error_ = 0;
