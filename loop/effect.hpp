@@ -85,8 +85,9 @@ struct Parametrisation {
   std::function<void(std::span<const double>, TestSetup&)> setup;
 };
 
-/// The same on every shot of the session: what a form `of_order` is where the session does not matter.
-Parametrisation at_every_shot(const Parametrisation& form);
+/// A form `of_order` that takes shots for as far in the session as `place` says of where they are: the same on every
+/// shot where that is constant, a jump where it is a step.
+Parametrisation placed_otherwise(const Parametrisation& form, std::function<double(double)> place);
 
 /// What the forms of an effect on shots depend on.
 struct Setting {

@@ -104,23 +104,22 @@ std::vector<Parametrisation> EffectEntry::forms(const HistorySetting& setting) c
 
 std::span<const EffectEntry> effects() { return kEffects; }
 
-Parametrisation at_every_shot(const Parametrisation& form) {
-  static constexpr double last = 1;
-  Parametrisation same = form;
-  same.of_order = false;
+Parametrisation placed_otherwise(const Parametrisation& form, std::function<double(double)> place) {
+  Parametrisation other = form;
+  other.of_order = false;
   if (form.before)
-    same.before = [before = form.before](std::span<const double> p, Shot& s) {
-      const double place = std::exchange(s.order, last);
+    other.before = [before = form.before, place](std::span<const double> p, Shot& s) {
+      const double own = std::exchange(s.order, place(s.order));
       before(p, s);
-      s.order = place;
+      s.order = own;
     };
   if (form.reading)
-    same.reading = [reading = form.reading](std::span<const double> p, const Shot& s, Output of, double value) {
+    other.reading = [reading = form.reading, place](std::span<const double> p, const Shot& s, Output of, double value) {
       Shot at = s;
-      at.order = last;
+      at.order = place(s.order);
       return reading(p, at, of, value);
     };
-  return same;
+  return other;
 }
 
 std::vector<EffectEntry> effects_with(std::span<const EffectEntry> own) {

@@ -25,12 +25,15 @@ Study::Study(Problem& data, const std::vector<Parametrisation>& forms, const std
 
 void Study::select(bool deep) {
   std::vector<const Parametrisation*> forms = candidates;
-  if (even_) std::erase_if(forms, [](const Parametrisation* f) { return f->of_order; });
+  if (even_ || jumps_) std::erase_if(forms, [](const Parametrisation* f) { return f->of_order; });
   selection = loop::select(problem, base, forms, rules, deep, told_);
   if (!std::isfinite(selection.base.deviance)) throw DataError("the model has no answer for these data");
   if (even_) return beside_drift();
   if (const Parametrisation* drift = likelier_at_every_shot()) {
     even_ = drift;
+    select(deep);
+  } else if (!jumps_ && jumps_rather()) {
+    jumps_ = true;
     select(deep);
   }
 }
@@ -39,20 +42,47 @@ double Study::likeliest(const Model& model) const {
   return criterion(fit(problem, Part::select, model, starts(model), problem.effort().starts), rules);
 }
 
+/// The chosen model, what drifts in it at other places in the session.
+double Study::likeliest_placed(const std::function<double(double)>& place) const {
+  const auto& chosen = selection.chosen.model.forms;
+  std::vector<Parametrisation> placed;
+  placed.reserve(chosen.size());
+  Model model;
+  for (std::size_t k = 0; k < chosen.size(); ++k)
+    model = model.with(k >= base.size() && chosen[k]->of_order
+                           ? &placed.emplace_back(placed_otherwise(*chosen[k], place))
+                           : chosen[k]);
+  return likeliest(model);
+}
+
+const Parametrisation* Study::drift() const {
+  const auto& chosen = selection.chosen.model.forms;
+  const auto it = std::find_if(chosen.begin() + std::ptrdiff_t(base.size()), chosen.end(),
+                               [](const Parametrisation* f) { return f->of_order; });
+  return it == chosen.end() ? nullptr : *it;
+}
+
+/// A jump somewhere that is likelier by more than a tie, and than the choice of its place is worth, than the drift and
+/// than one that settles early.
+bool Study::jumps_rather() const {
+  if (!drift()) return false;
+  constexpr int places = 12;
+  const double enough = rules.tie + 2 * std::log(places - 1.0),
+               drifting = std::min(criterion(selection.chosen, rules),
+                                   likeliest_placed([](double order) { return 1 - std::exp(-5 * order); }));
+  for (int k = 1; k < places; ++k) {
+    const double at = double(k) / places;
+    if (likeliest_placed([at](double order) { return order > at ? 1.0 : 0.0; }) + enough < drifting) return true;
+  }
+  return false;
+}
+
 /// What is told as a drift must drift: the one among the chosen that is no likelier than the same on every shot. One
 /// that is not much likelier is none either, and is told so.
 const Parametrisation* Study::likelier_at_every_shot() {
-  const auto& chosen = selection.chosen.model.forms;
-  std::vector<Parametrisation> same(chosen.size());
-  Model model;
-  const Parametrisation* drift = nullptr;
-  for (std::size_t k = 0; k < chosen.size(); ++k) {
-    const bool drifts = k >= base.size() && chosen[k]->of_order;
-    if (drifts) same[k] = at_every_shot(*(drift = chosen[k]));
-    model = model.with(drifts ? &same[k] : chosen[k]);
-  }
+  const Parametrisation* drift = this->drift();
   if (!drift) return nullptr;
-  const double beyond = likeliest(model) - criterion(selection.chosen, rules);
+  const double beyond = likeliest_placed([](double) { return 1.0; }) - criterion(selection.chosen, rules);
   if (beyond < 0) return drift;
   if (beyond < rules.tie)
     selection.at_every_shot =

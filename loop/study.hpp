@@ -22,8 +22,12 @@ struct Study {
   /// acts so is a candidate then.
   const Parametrisation* even_ = nullptr;
   void select(bool deep);
+  bool jumps_ = false;  // what was chosen so jumps: nothing that drifts is a candidate then
   double likeliest(const Model& model) const;
+  double likeliest_placed(const std::function<double(double)>& place) const;
   const Parametrisation* likelier_at_every_shot();
+  const Parametrisation* drift() const;  // of the chosen; null: none
+  bool jumps_rather() const;
   void beside_drift();
   void settle();
   void refute_noise();

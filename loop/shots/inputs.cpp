@@ -10,6 +10,7 @@
 #include "golf/dense.hpp"
 #include "loop/deviation.hpp"
 #include "loop/shots/model.hpp"
+#include "solvers/random.hpp"
 
 namespace hosel::loop {
 namespace {
@@ -32,6 +33,12 @@ std::vector<double> session_order(const Shots& shots, const std::vector<int>& ro
   std::vector<double> place;
   for (const int row : rows) place.push_back(numbered ? shot->value[std::size_t(row)] : double(row));
   if (place.empty()) return place;
+  if (const Column* by = sorted_by(shots); by && by->numeric) {
+    // The session's order is lost. A drawn one shows nothing that the sorting makes.
+    std::mt19937_64 random(1);
+    const auto drawn = solvers::shuffled(place.size(), random);
+    place.assign(drawn.begin(), drawn.end());
+  }
   const auto [first, last] = std::ranges::minmax(place);
   for (double& x : place) x = last > first ? (x - first) / (last - first) : 0.0;
   return place;

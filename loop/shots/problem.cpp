@@ -237,7 +237,8 @@ std::vector<Flag> ShotProblem::flags() const {
 std::vector<std::string> ShotProblem::notes() const {
   std::vector<std::string> all = notes_;
   if (const Column* by = sorted_by(as_read(case_)))
-    all.push_back(fmt::format("rows stand sorted by {} and have no shot number: no session-drift is sought", by->name));
+    all.push_back(fmt::format(
+        "rows stand sorted by {}: the order of the session is not known, and no session-drift is sought", by->name));
   if (select_.size() < rows_.train.size())
     all.push_back(fmt::format("effects selected on {} of {} training rows, then fitted to all", select_.size(),
                               rows_.train.size()));

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "golf/units.hpp"
+#include "loop/shots/offsets.hpp"
 #include "loop/shots/problem.hpp"
 #include "loop/shots/recurring.hpp"
 #include "loop/shots/slow.hpp"
@@ -15,19 +16,60 @@
 namespace hosel::loop {
 namespace {
 
+std::vector<Input> recorded(const Shots& shots) {
+  std::vector<Input> all;
+  for (int k = 0; k < kInputs; ++k)
+    if (shots.find_stem(stem(Input(k)))) all.push_back(Input(k));
+  return all;
+}
+
+/// The case with that column as it should read, and what is told of it: names beside it are those of the rest.
+std::pair<ShotCase, WrongColumn> set_right(const ShotCase& c, const InputOffset& off) {
+  ShotCase right = c;
+  const std::string name = c.shots.find_stem(stem(off.input))->name;
+  WrongColumn told{name, "offset", ""};
+  for (Column& column : right.shots.columns)
+    if (column.name == name) {
+      for (double& x : column.value) x += off.size;
+      const auto unit = split_unit(name).unit;
+      told.text = fmt::format("{} reads {:.4g} {} too {} throughout{}", name, std::abs(off.size) / column.si,
+                              unit ? unit->suffix : "", off.size < 0 ? "high" : "low",
+                              off.beside.empty() ? "" : fmt::format(", beside {}", fmt::join(off.beside, " and ")));
+    }
+  return {std::move(right), std::move(told)};
+}
+
+/// `offset`: of a column that was set right; it is told where nothing else remains.
 LoopResult pass(const ShotCase& c, const Columns& columns, const std::vector<DerivedColumn>& derived,
-                const std::optional<std::set<int>>& held_rows, std::optional<Input> doubted = {}) {
+                const std::optional<std::set<int>>& held_rows, std::optional<Input> doubted = {},
+                const std::optional<WrongColumn>& offset = {}) {
   ShotProblem problem(c, derived, held_rows, doubted);
   LoopResult result(c, c.shots.rows());
   result.derived = derived;
   result.unused = problem.unused();
   result.forms = problem.forms();
   const Study study(problem, result.forms, c.effects, c.rules, c.told);
-  std::vector<Fit> rivals{study.selection.chosen, study.selection.richest};
-  for (const Candidate& candidate : study.selection.candidates) rivals.push_back(candidate.fit);
-  if (rivals.size() > 30) rivals.resize(30);
-  result.columns = columns.contradicted(rivals, result.forms);
+  if (!offset && c.direct && !c.averages && !c.surrogate && !c.closing)
+    if (const auto off = likelier_offset(problem, study, recorded(c.shots))) {
+      const auto [right, told] = set_right(c, *off);
+      // Where more is wrong, the offset is no more than the nearest thing to it.
+      if (LoopResult all = pass(right, columns, derived, held_rows, doubted, told); !all.columns.empty()) return all;
+    }
+  if (!offset) {
+    std::vector<Fit> rivals{study.selection.chosen, study.selection.richest};
+    for (const Candidate& candidate : study.selection.candidates) rivals.push_back(candidate.fit);
+    if (rivals.size() > 30) rivals.resize(30);
+    result.columns = columns.contradicted(rivals, result.forms);
+  }
   conclude(study, result);
+  if (offset && (result.verdict == Verdict::explained || result.verdict == Verdict::ambiguous ||
+                 result.verdict == Verdict::no_residual)) {
+    result.columns = {*offset};
+    result.verdict = Verdict::unexplained;
+    result.unexplained.insert(result.unexplained.begin(), {"", offset->column, offset->text});
+    result.notes.push_back(fmt::format("{}: taken as it should read for all that follows", offset->column));
+    result.next = problem.next_experiment(result);
+  }
   const Face& face = c.blow.club.head.face;
   if (std::ranges::count(result.adopted, "cg-shift") && std::isinf(face.bulge) && std::isinf(face.roll))
     result.notes.emplace_back(

@@ -13,13 +13,8 @@
 namespace hosel::loop {
 namespace {
 
-struct Slip {
-  std::string column, reason;
-  double distance = 0;
-  double cost = 0;  ///< rarer slips need a better fit
-};
-
-constexpr double kPerhaps = 2e-4;  // share of the rows beyond which one slip may be sought
+constexpr double kPerhaps = 2e-4;   // share of the rows beyond which one slip may be sought
+constexpr double kAccidents = 0.3;  // slips that would bring a row back by accident: with more, none is the reason
 
 struct Factor {
   double value;
@@ -75,17 +70,17 @@ class Row {
   }
   /// Squared distance with some columns' values [SI] replaced.
   struct Replaced {
-    const ColumnUse& use;
+    const ColumnUse* use;
     double si;
   };
-  double distance(std::initializer_list<Replaced> by = {}) const {
+  double distance(const std::vector<Replaced>& by = {}) const {
     Eigen::VectorXd r = prediction_, y = measured_;
     Shot t = trial_;
     bool other = false;
     for (const auto& [use, si] : by) {
-      if (use.input >= 0) set(t.blow, Input(use.input), si);
-      else y[use.channel] = si / use.column->si;
-      other = other || use.input >= 0;
+      if (use->input >= 0) set(t.blow, Input(use->input), si);
+      else y[use->channel] = si / use->column->si;
+      other = other || use->input >= 0;
     }
     if (!(other ? model_.predict(t, shot_, fit_.model, fit_.p.data(), r.data()) : predicted_))
       return 1e4 * model_.width();
@@ -102,13 +97,40 @@ class Row {
   bool predicted_ = false;
 };
 
+struct Slip {
+  std::string column, reason;
+  std::vector<Row::Replaced> by;
+  double distance = 0;
+  double cost = 0;  ///< rarer slips need a better fit
+};
+
+/// How many of `tried` slips bring a row back by accident as well as this one, whose value lies as far from the
+/// recorded one: by the width of the values that the row allows there.
+double accidents(const Row& row, const Slip& slip, std::size_t file_row, std::size_t tried) {
+  double expected = double(tried);
+  for (std::size_t k = 0; k < slip.by.size(); ++k) {
+    const Row::Replaced& r = slip.by[k];
+    const double far = std::abs(r.si - r.use->column->native(file_row) * r.use->column->si), step = 0.05 * far;
+    const auto at = [&](double d) {
+      std::vector<Row::Replaced> by = slip.by;
+      by[k].si += d;
+      return row.distance(by);
+    };
+    const double curve = (at(step) + at(-step) - 2 * slip.distance) / (step * step);
+    if (!(curve > 0)) return kInfinity;
+    expected *= std::min(1.0, std::sqrt(2 * kPi) * std::sqrt(2 / curve) / far);
+  }
+  return expected;
+}
+
 /// Every slip of the record that could be: units and decimal places, signs, digits, two columns swapped.
 std::vector<Slip> slips_of(const Row& row, const std::vector<const ColumnUse*>& present, std::size_t file_row) {
   std::vector<Slip> slips;
   for (const ColumnUse* u : present) {
     const double si = u->column->si, native = u->column->native(file_row);
     const auto attempt = [&](double x, std::string reason, double cost) {
-      slips.push_back({u->column->name, std::move(reason), row.distance({{*u, x * si}}), cost});
+      const std::vector<Row::Replaced> by = {{u, x * si}};
+      slips.push_back({u->column->name, std::move(reason), by, row.distance(by), cost});
     };
     for (const Factor& f : factors(*u->column))
       for (const double x : {native * f.value, native / f.value})
@@ -122,10 +144,10 @@ std::vector<Slip> slips_of(const Row& row, const std::vector<const ColumnUse*>& 
   for (std::size_t a = 0; a < present.size(); ++a)
     for (std::size_t b = a + 1; b < present.size(); ++b) {
       const ColumnUse &u = *present[a], &v = *present[b];
-      slips.push_back({u.column->name, fmt::format("fits with {} and {} swapped", u.column->name, v.column->name),
-                       row.distance({{u, v.column->native(file_row) * u.column->si},
-                                     {v, u.column->native(file_row) * v.column->si}}),
-                       2});
+      const std::vector<Row::Replaced> by = {{&u, v.column->native(file_row) * u.column->si},
+                                             {&v, u.column->native(file_row) * v.column->si}};
+      slips.push_back({u.column->name, fmt::format("fits with {} and {} swapped", u.column->name, v.column->name), by,
+                       row.distance(by), 2});
     }
   return slips;
 }
@@ -140,12 +162,12 @@ std::string likeliest_column(const ShotModel& model, const Row& row, int shot,
     if (u->channel >= 0) {
       // The best value of this channel: minimise over it by a parabola through three points.
       const double si = u->column->si, y = model.measured()(shot, u->channel), h = model.sigma(shot, u->channel);
-      const double up = row.distance({{*u, (y + h) * si}}), down = row.distance({{*u, (y - h) * si}});
+      const double up = row.distance({{u, (y + h) * si}}), down = row.distance({{u, (y - h) * si}});
       const double curve = up + down - 2 * d, slope = (up - down) / 2;
       if (curve > 0) d -= slope * slope / (2 * curve);
     } else {
       const auto [lo, hi] = range_of(u->column->value, std::identity());
-      for (int k = 0; k <= 40; ++k) d = std::min(d, row.distance({{*u, lo + (hi - lo) * k / 40.0}}));
+      for (int k = 0; k <= 40; ++k) d = std::min(d, row.distance({{u, lo + (hi - lo) * k / 40.0}}));
     }
     if (d < least) {
       least = d;
@@ -227,7 +249,7 @@ void gather_clusters(const ShotModel& model, const Shots& shots, const std::vect
           f.cluster = one_slip;
         } else {
           const int shot = shot_of.at(row);
-          flags.push_back({shot, row, column, said, finding, Row(model, fit, shot).distance(), true, one_slip});
+          flags.push_back({shot, row, column, said, "", finding, Row(model, fit, shot).distance(), true, one_slip});
           flag_of[row] = flags.size() - 1;
         }
       }
@@ -280,7 +302,11 @@ Screening screen(const ShotModel& model, const Shots& shots, const std::vector<i
       if (s.distance < fits && s.distance < half && (!best || s.distance + s.cost < best->distance + best->cost))
         best = &s;
     if (best) {
-      const RowFlag flag{i, int(file_row), best->column, best->reason, 0, distance, true};
+      RowFlag flag{
+          .shot = i, .row = int(file_row), .column = best->column, .reason = best->reason, .distance = distance};
+      if (accidents(row, *best, file_row, slips.size()) > kAccidents)
+        flag.doubtful = fmt::format("{:.1f} noise units from the model: mis-tracked or mistyped ({})",
+                                    std::sqrt(distance), best->reason);
       if (const auto it = known.find(i); it != known.end()) flags[it->second] = flag;
       else flags.push_back(flag);
       continue;
@@ -289,7 +315,7 @@ Screening screen(const ShotModel& model, const Shots& shots, const std::vector<i
     flags.push_back({i, int(file_row), likeliest_column(model, row, i, present),
                      fmt::format("no model of the family explains this shot ({:.1f} noise units away): mis-tracked",
                                  std::sqrt(distance)),
-                     0, distance, false});
+                     "", 0, distance, false});
   }
   gather_clusters(model, shots, row_of, fit, flags);
 
@@ -319,6 +345,8 @@ Screening screen(const ShotModel& model, const Shots& shots, const std::vector<i
     std::erase_if(flags, unexplained);
     widespread(unreasoned);
   }
+  for (RowFlag& f : flags)
+    if (single(f) && !f.doubtful.empty()) f.reason = f.doubtful;
   std::ranges::stable_sort(flags, {}, &RowFlag::row);
   return screening;
 }

@@ -15,6 +15,7 @@ struct RowFlag {
   int row = 0;    ///< of the file
   std::string column;
   std::string reason;
+  std::string doubtful = {};  ///< the reason where the slip is this row's alone; empty: no accident would fit as well
   int finding = 0;
   double distance = 0;   ///< squared Mahalanobis distance
   bool slip = true;      ///< a slip of the record explains it; else only that nothing explains it is known
@@ -39,9 +40,10 @@ struct ColumnUse {
 
 /// Flags shots of the model at a fitted model. A row is flagged where its distance is beyond what the noise
 /// allows in so many rows, or somewhat less where one slip (unit, swapped columns, transposed digits, sign,
-/// decimal point) brings it back. `before`: rows that were flagged before they could become shots. A cluster most
-/// of whose rows are flagged is one finding, with what stands in its column where another column shows it.
-/// `clean`: the fit leaves no structure; else its own misfit has tails, and a row must stand out from those.
+/// decimal point) brings it back. A slip is told as the reason of a single row only where none of so many would bring
+/// it back by accident. `before`: rows that were flagged before they could become shots. A cluster most of whose rows
+/// are flagged is one finding, with what stands in its column where another column shows it. `clean`: the fit leaves no
+/// structure; else its own misfit has tails, and a row must stand out from those.
 Screening screen(const ShotModel& model, const Shots& shots, const std::vector<int>& row_of,
                  const std::vector<ColumnUse>& uses, const Fit& fit, bool clean, const std::vector<RowFlag>& before);
 

@@ -12,6 +12,7 @@
 #include <tuple>
 
 #include "golf/units.hpp"
+#include "loop/deviation.hpp"
 #include "loop/rules.hpp"
 
 namespace hosel::loop {
@@ -375,7 +376,33 @@ Groups groups(const Column& column) {
   return g;
 }
 
+namespace {
+
+/// A reading that only rises or only falls from shot to shot, with hardly a value twice.
+bool monotone(const Shots& shots, const Column& reading) {
+  const Column* shot = shots.find("shot");
+  const bool numbered = shots.has_shot_column && shot && shot->numeric;
+  const std::vector<int> by_order =
+      rising_order(shots.rows(), [&](int i) { return numbered ? shot->value[std::size_t(i)] : double(i); });
+  std::size_t values = 0, rises = 0, falls = 0;
+  double before = kNaN;
+  for (const int i : by_order) {
+    const double x = reading.value[std::size_t(i)];
+    if (!std::isfinite(x)) continue;
+    ++values;
+    rises += x > before;
+    falls += x < before;
+    before = x;
+  }
+  return values >= std::size_t(kFewestRows) && std::min(rises, falls) == 0 &&
+         5 * std::max(rises, falls) >= 4 * (values - 1);
+}
+
+}  // namespace
+
 const Column* sorted_by(const Shots& shots) {
+  for (const Column& c : shots.columns)
+    if (c.numeric && c.role == Role::output && monotone(shots, c)) return &c;
   if (shots.has_shot_column) return nullptr;
   for (const Column& c : shots.columns) {
     if (c.numeric) continue;

@@ -76,8 +76,9 @@ struct Groups {
 Groups groups(const Column& column);
 /// More groups than this are no few clubs or players.
 inline constexpr std::size_t kMostGroups = 12;
-/// The text column by which rows without a shot number stand sorted, every value in one block: they are not in the
-/// order in which they were struck. nullptr where there is none.
+/// The column by which rows stand sorted, so that they are not in the order in which they were struck: a reading that
+/// only rises or only falls (noise would not let it), or without a shot number a text column with every value in one
+/// block. nullptr where there is none.
 const Column* sorted_by(const Shots& shots);
 /// Whether every club of a column `club` was hit in one go, and there are several.
 bool one_club_after_another(const Shots& shots);

@@ -13,6 +13,8 @@
 namespace hosel::loop {
 namespace {
 
+/// The reading itself. It names what follows it; the inputs that make the reading find it.
+constexpr const char* kGain = "gain";
 constexpr double kAbsorbed = 0.05;  // of a regressor's norm: with less left, lines or the fit absorb it
 
 /// Returns the signal, in units of the channel's noise, below which a finding is ignored: two declared standard
@@ -81,6 +83,7 @@ void add_responses(const ShotModel& model, const std::vector<int>& rows, const E
     const auto at = [&](double q) { return at_share(sorted, q); };
     Eigen::VectorXd line = y.col(c);
     if (!standardise(line, rows)) continue;
+    all.push_back({name, kGain, "", false, line, c});
     const auto add = [&](std::string detail, auto&& value) {
       Eigen::VectorXd x(n);
       for (int i = 0; i < n; ++i) x[i] = value(y(i, c));
@@ -365,6 +368,7 @@ StructureMap structure(const Problem& problem, const Whitened& view, const Fit& 
     const double t = std::abs(f.statistic);
     const auto above = largest.end() - std::ranges::lower_bound(largest, t - 1e-5);
     f.p_adjusted = (1.0 + double(above)) / (1.0 + double(largest.size()));
+    if (f.kind == kGain) continue;
     if (std::abs(f.signal) > (f.channel >= 0 ? least_signal(problem.channel(f.channel)) : least_of_any))
       top = std::max(top, t);
     else f.p_adjusted = 1;
@@ -372,7 +376,8 @@ StructureMap structure(const Problem& problem, const Whitened& view, const Fit& 
   map.p = (1.0 + double(largest.end() - std::ranges::lower_bound(largest, top - 1e-5))) /
           (1.0 + double(largest.size()));
   std::ranges::stable_sort(map.findings, std::ranges::greater{}, [](const Finding& f) { return std::abs(f.signal); });
-  if (const auto first = std::ranges::find_if(map.findings, known); first != map.findings.end())
+  const auto counts = [&](const Finding& f) { return f.kind != kGain && known(f); };
+  if (const auto first = std::ranges::find_if(map.findings, counts); first != map.findings.end())
     map.signal = std::abs(first->signal);
   return map;
 }
@@ -385,9 +390,17 @@ std::vector<Location> plainest_places(const Problem& problem, const Selection& s
     const auto same = [&](const Location& k) { return k.channel == l.channel && k.regressor == l.regressor; };
     if (std::ranges::none_of(told, same)) told.push_back(l);
   };
-  const auto first = [](const StructureMap& map) -> const Finding* {
+  // Blocks of one player, ball or club after another look like a swing of the session: what the record names says more.
+  constexpr double nearly = 0.7;
+  const auto names_it = [&](const Finding& f, const Finding& group) {
+    return f.regressor == "shot" && group.kind == "group" && group.channel == f.channel &&
+           std::abs(group.signal) > nearly * std::abs(f.signal);
+  };
+  const auto first = [&](const StructureMap& map) -> const Finding* {
     const auto it = std::ranges::find_if(map.findings, [](const Finding& f) { return f.channel >= 0; });
-    return it == map.findings.end() ? nullptr : &*it;
+    if (it == map.findings.end()) return nullptr;
+    const auto group = std::ranges::find_if(map.findings, [&](const Finding& f) { return names_it(*it, f); });
+    return group == map.findings.end() ? &*it : &*group;
   };
   const Finding* left = first(s.after);
   if (!left || !left->foreign) add(first(s.before));
@@ -396,7 +409,8 @@ std::vector<Location> plainest_places(const Problem& problem, const Selection& s
   for (const StructureMap* map : {&s.after, &s.before})
     for (const Finding& f : map->findings)
       if (f.channel >= 0 && told.size() < 4 && std::abs(f.signal) > 0.85 * std::abs(map->findings.front().signal) &&
-          f.p_adjusted < kTold)
+          f.p_adjusted < kTold &&
+          std::ranges::none_of(map->findings, [&](const Finding& group) { return names_it(f, group); }))
         add(&f);
   return told;
 }

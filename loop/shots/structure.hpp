@@ -12,16 +12,16 @@
 namespace hosel::loop {
 
 struct Regressor {
-  std::string column;     ///< header, "shot" for the order, "constant"
-  std::string kind;       ///< constant, trend, curvature, interaction, group, step, oscillation, turn, response, lag
-  std::string detail;     ///< "with club_speed_mps", "= 7i", "at 8 % of the session"
+  std::string column;  ///< header, "shot" for the order, "constant"
+  std::string kind;    ///< constant, trend, curvature, interaction, group, step, oscillation, turn, response, gain, lag
+  std::string detail;  ///< "with club_speed_mps", "= 7i", "at 8 % of the session"
   bool foreign = false;   ///< see Finding
   Eigen::VectorXd value;  ///< per shot of the model; centred, unit mean square over the rows
   int channel = -1;       ///< the only channel that it is tried on; -1: all
 };
 
 /// Regressors from the columns of the data over the rows, and per channel the instrument's own response: dead
-/// bands, saturation and lag of what the base model predicts. `row_of[shot]` is the row in `shots`.
+/// bands, saturation, gain and lag of what the base model predicts. `row_of[shot]` is the row in `shots`.
 std::vector<Regressor> regressors(const Shots& shots, const std::vector<int>& row_of, const std::vector<int>& rows,
                                   const ShotModel& model);
 

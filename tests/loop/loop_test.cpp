@@ -963,7 +963,7 @@ TEST_F(Loop, ADriftIsNotTheSameOnEveryShot) {
 TEST_F(Loop, AFormOfTheSessionIsTheSameOnEveryShotWithoutIt) {
   for (const Parametrisation& f : forms::session_drift({.outputs = {Output::ball_speed, Output::azimuth}})) {
     ASSERT_TRUE(f.of_order);
-    const Parametrisation same = at_every_shot(f);
+    const Parametrisation same = placed_otherwise(f, [](double) { return 1.0; });
     EXPECT_FALSE(same.of_order);
     const std::vector<double> p(f.parameters.size(), 0.01);
     const auto reading = [&](const Parametrisation& form, double order) {
@@ -1579,6 +1579,84 @@ TEST_F(Loop, RowsSortedByAColumnAreNoSession) {
   for (const ScoredCandidate& c : r.candidates) EXPECT_EQ(std::ranges::count(c.candidate.effects, "session-drift"), 0);
   EXPECT_NE(std::ranges::find_if(r.notes, [](const std::string& n) { return n.find("sorted by club") != n.npos; }),
             r.notes.end());
+}
+
+TEST_F(Loop, RowsSortedByAReadingAreNoSession) {
+  // Plain shots, renumbered by rising ball speed: neighbours are alike, and nothing drifts.
+  const ShotCase plain = case_of(csv({}));
+  std::vector<double> speed = plain.shots.find("ball_speed_mps")->value;
+  EXPECT_EQ(sorted_by(plain.shots), nullptr);
+  const std::string text = changed(csv({}), "", [&](int row, std::vector<std::string>& cells) {
+    const auto rank = std::ranges::count_if(speed, [&](double v) { return v < speed[std::size_t(row)]; });
+    cells[0] = std::to_string(rank + 1);
+  });
+  const ShotCase sorted = case_of(text);
+  ASSERT_NE(sorted_by(sorted.shots), nullptr);
+  EXPECT_EQ(sorted_by(sorted.shots)->name, "ball_speed_mps");
+  const LoopResult r = run(sorted);
+  EXPECT_EQ(r.verdict, Verdict::no_residual) << sentence(r);
+  EXPECT_NE(
+      std::ranges::find_if(r.notes, [](const std::string& n) { return n.find("sorted by ball_speed") != n.npos; }),
+      r.notes.end());
+}
+
+TEST_F(Loop, AJumpBesideAnEffectIsNoDrift) {
+  const auto told = [&](bool jump) {
+    return run(
+        case_of(changed(csv({.shots = 160, .tangential = 0.1}), "", [&](int row, std::vector<std::string>& cells) {
+          const double more = jump ? (row >= 90 ? 1.2 : 0) : 1.8 * row / 160.0;
+          std::string& launch = cells[kBallSpeed + 1];
+          launch = fmt::format("{:.3f}", std::stod(launch) + more);
+        })));
+  };
+  const LoopResult drifts = told(false), jumps = told(true);
+  EXPECT_EQ(std::ranges::count(drifts.adopted, "session-drift"), 1) << sentence(drifts);
+  EXPECT_EQ(std::ranges::count(jumps.adopted, "session-drift"), 0) << sentence(jumps);
+  EXPECT_EQ(jumps.verdict, Verdict::unexplained);
+  EXPECT_NE(sentence(jumps).find("step at"), std::string::npos) << sentence(jumps);
+}
+
+TEST_F(Loop, AnInputThatIsOffBesideAnEffectIsTold) {
+  const auto told = [&](double toe) {
+    return run(case_of(changed(csv({.shots = 160, .tangential = 0.12}), "", [&](int, std::vector<std::string>& cells) {
+      cells[kToeOffset] = fmt::format("{:.2f}", std::stod(cells[kToeOffset]) + toe);
+    })));
+  };
+  const LoopResult right = told(0), off = told(4);
+  using Names = std::vector<std::string>;
+  EXPECT_EQ(right.adopted, Names{"ball-tangential-compliance"}) << sentence(right);
+  EXPECT_TRUE(right.columns.empty());
+  ASSERT_EQ(off.columns.size(), 1U) << sentence(off);
+  EXPECT_EQ(off.columns[0].column, "impact_toe_mm");
+  EXPECT_EQ(off.columns[0].finding, "offset");
+  EXPECT_NE(off.columns[0].text.find("too high"), std::string::npos) << off.columns[0].text;
+  EXPECT_EQ(off.adopted, Names{"ball-tangential-compliance"}) << sentence(off);
+  EXPECT_EQ(off.verdict, Verdict::unexplained);
+}
+
+TEST_F(Loop, AReadingThatIsAMultipleIsNoLag) {
+  const auto places = [&](bool lag) {
+    double before = 0;
+    const LoopResult r = run(case_of(changed(csv({.shots = 160}), "", [&](int row, std::vector<std::string>& cells) {
+      const double own = std::stod(cells[kSidespin]);
+      cells[kSidespin] = fmt::format("{:.1f}", lag && row > 0 ? 0.75 * own + 0.25 * before : (lag ? 1 : 0.7) * own);
+      before = own;
+    })));
+    return r.unexplained.empty() ? "" : r.unexplained.front().regressor + " " + r.unexplained.front().detail;
+  };
+  EXPECT_EQ(places(true).find("shot lag"), 0U) << places(true);
+  EXPECT_EQ(places(false).find("lag"), std::string::npos) << places(false);
+}
+
+TEST_F(Loop, NoSlipIsNamedThatFitsByAccident) {
+  // Heavy tails: rows far off, with dozens of slips tried on each.
+  int flagged = 0;
+  for (unsigned seed = 1; seed <= 3; ++seed)
+    for (const Flag& f : run(case_of(csv({.shots = 200, .tails = 3, .seed = seed}))).flagged) {
+      ++flagged;
+      EXPECT_NE(f.reason.find("mis-tracked"), std::string::npos) << f.reason;
+    }
+  EXPECT_GT(flagged, 3);
 }
 
 TEST_F(Loop, ClubsHitOneAfterAnotherMakeADriftLessLikely) {
