@@ -7,6 +7,7 @@
 #include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <set>
 #include <span>
 #include <sstream>
@@ -214,6 +215,36 @@ std::string different_files(const std::map<std::string, std::string>& a, const s
   return out;
 }
 
+/// A number or a list of numbers as a case states it, in SI; nothing of anything else.
+std::optional<std::vector<double>> in_si(std::string text, double si) {
+  std::vector<double> out;
+  std::erase_if(text, [](char c) { return c == '[' || c == ']' || c == ' '; });
+  for (std::size_t at = 0; at <= text.size();) {
+    const std::size_t end = std::min(text.find(',', at), text.size());
+    const std::string one = text.substr(at, end - at);
+    char* stop = nullptr;
+    out.push_back(si * std::strtod(one.c_str(), &stop));
+    if (one.empty() || *stop != '\0') return {};
+    at = end + 1;
+  }
+  return out;
+}
+
+/// Whether an input that the other run has not is there in another unit, with the same value.
+bool in_another_unit(const std::string& key, const std::string& value, const Leaves& other) {
+  const SplitName own = split_unit(key);
+  if (!own.unit) return false;
+  const auto x = in_si(value, own.unit->si);
+  return x && std::ranges::any_of(other, [&](const auto& entry) {
+           const SplitName there = split_unit(entry.first);
+           if (!there.unit || there.stem != own.stem || there.unit->dimension != own.unit->dimension) return false;
+           const auto y = in_si(entry.second, there.unit->si);
+           return y && std::ranges::equal(*x, *y, [](double a, double b) {
+                    return a == b || std::abs(a - b) <= 1e-12 * std::max(std::abs(a), std::abs(b));
+                  });
+         });
+}
+
 }  // namespace
 
 std::string difference(const fs::path& a_dir, const fs::path& b_dir) {
@@ -226,8 +257,11 @@ std::string difference(const fs::path& a_dir, const fs::path& b_dir) {
     const auto it = run.inputs.find(key);
     return it == run.inputs.end() ? std::string("-") : it->second;
   };
-  for (const auto& [key, ignored] : all)
+  for (const auto& [key, value] : all) {
+    const bool alone = !a.inputs.contains(key) || !b.inputs.contains(key);
+    if (alone && in_another_unit(key, value, a.inputs.contains(key) ? b.inputs : a.inputs)) continue;
     if (said(a, key) != said(b, key)) rows += fmt::format("  {:<36} {:>20} {:>20}\n", key, said(a, key), said(b, key));
+  }
   const std::string files = different_files(a.files, b.files);
   if (rows.empty() && files.empty()) out += "  the same\n";
   if (!rows.empty()) out += fmt::format("  {:<36} {:>20} {:>20}\n", "", "A", "B") + rows;

@@ -19,6 +19,7 @@
 #include "app/read_solid.hpp"
 #include "build_info.hpp"
 #include "post/file.hpp"
+#include "solvers/errors.hpp"
 
 namespace hosel::app {
 namespace fs = std::filesystem;
@@ -347,6 +348,66 @@ std::string face_name(Table root) {
 
 }  // namespace
 
+// A set that knows the case's face comes before one of the right loft alone.
+const NamedContact* LoftSets::at(const Blow& blow) const {
+  for (const bool same_face : {true, false})
+    for (const NamedContact& s : sets)
+      if (same_face == (std::ranges::find(s.seen.faces, face) != s.seen.faces.end()) &&
+          beyond({.spin_loft = s.seen.spin_loft}, use_of(blow)).empty())
+        return &s;
+  return nullptr;
+}
+
+bool LoftSets::matter_to(const std::string& model) const {
+  if (!model.starts_with("fe-")) return true;
+  return std::ranges::any_of(sets,
+                             [&](const NamedContact& s) { return s.face_friction != sets.front().face_friction; });
+}
+
+std::optional<LoftSets> sets_by_loft(Table root) {
+  auto contact = root.optional_table("contact");
+  auto ball = root.optional_table("ball");
+  if (!ball || ball->has("reduced") || root.has("motion") || (contact && contact->has("name"))) return {};
+  const auto model = named_entry(*ball, "model", Shelf::balls);
+  if (!model) return {};
+  LoftSets out{library_ball(*model).reduced, face_name(root)};
+  return out.sets.size() > 1 ? std::optional(std::move(out)) : std::nullopt;
+}
+
+std::vector<std::string> with_set(std::vector<std::string> overrides, const std::string& set) {
+  // The loft at which the search begins may lie beyond what the set saw.
+  overrides.insert(overrides.end(), {fmt::format("ball.reduced=\"{}\"", set), "ball.extrapolate=true"});
+  return overrides;
+}
+
+std::string consistent_set(const LoftSets& sets, const std::function<Blow(const std::string&)>& match) {
+  std::vector<std::string> consistent, chosen, found;
+  for (const NamedContact& s : sets.sets) try {
+      const Blow blow = match(s.name);
+      found.push_back(fmt::format("'{}' {:.2f} deg", s.name, degrees(blow.delivery.dynamic_loft)));
+      if (const NamedContact* own = sets.at(blow); own && own->name == s.name)
+        consistent.push_back(s.name), chosen.push_back(found.back());
+    } catch (const solvers::NonConvergence&) {}
+  if (consistent.size() == 1) return consistent.front();
+  if (!consistent.empty())
+    throw solvers::NonConvergence(
+        fmt::format("several of the ball's sets of parameters lead to a loft that chooses them ({}): say which by "
+                    "ball.reduced",
+                    fmt::join(chosen, ", ")));
+  throw solvers::NonConvergence(fmt::format(
+      "none of the ball's sets of parameters leads to a loft that chooses it ({}): say which by ball.reduced",
+      found.empty() ? "none gives the launch angle" : fmt::format("{}", fmt::join(found, ", "))));
+}
+
+std::string used_beyond(const CaseFile& file, const std::vector<std::string>& overrides, const Blow& blow,
+                        const std::string& model) {
+  CaseFile found(file, overrides);
+  try {
+    check_use(found.root(), use_of(blow), {model});
+  } catch (const InputError& e) { return e.what(); }
+  return {};
+}
+
 std::optional<NamedContact> named_contact(Table root) {
   if (auto contact = root.optional_table("contact"))
     if (const auto wanted = named_entry(*contact, "name", Shelf::contacts)) return library_contact(*wanted);
@@ -354,7 +415,8 @@ std::optional<NamedContact> named_contact(Table root) {
   if (!ball) return {};
   const auto model = named_entry(*ball, "model", Shelf::balls);
   if (!model) return {};
-  const std::vector<NamedContact> sets = library_ball(*model).reduced;
+  LoftSets by_loft{library_ball(*model).reduced, {}};
+  const std::vector<NamedContact>& sets = by_loft.sets;
   if (sets.empty()) return {};
   const std::vector<std::string> names = names_in(sets);
   if (ball->has("reduced")) {
@@ -369,13 +431,8 @@ std::optional<NamedContact> named_contact(Table root) {
     blow.delivery = read_delivery_of(root);
     loft = fmt::format("none of them saw this loft, a spin loft of {:.3g} deg (dynamic loft less attack angle)",
                        degrees(blow.delivery.dynamic_loft - blow.delivery.attack_angle));
-    // A set that knows the case's face comes before one of the right loft alone.
-    const std::string face = face_name(root);
-    for (const bool same_face : {true, false})
-      for (const NamedContact& s : sets)
-        if (same_face == (std::ranges::find(s.seen.faces, face) != s.seen.faces.end()) &&
-            beyond({.spin_loft = s.seen.spin_loft}, use_of(blow)).empty())
-          return s;
+    by_loft.face = face_name(root);
+    if (const NamedContact* s = by_loft.at(blow)) return *s;
   }
   ball->fail("model", fmt::format("'{}' has several sets of parameters and {}: say which by `reduced` ({})", *model,
                                   loft, fmt::join(names, ", ")));

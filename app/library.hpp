@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -109,11 +110,31 @@ std::optional<std::string> named_entry(Table& table, std::string_view key, Shelf
 /// of several). Nothing where neither is there.
 std::optional<NamedContact> named_contact(Table root);
 
+/// The sets of reduced parameters of a case's ball, of which the loft chooses one.
+struct LoftSets {
+  std::vector<NamedContact> sets;
+  std::string face;  ///< of the case or its head; empty: none
+  /// The set that saw the spin loft of this blow; nullptr where none did.
+  const NamedContact* at(const Blow& blow) const;
+  /// Whether it matters to a model which of them is taken.
+  bool matter_to(const std::string& model) const;
+};
+/// Nothing where the ball has one set, or the case says which, or a swing says the loft.
+std::optional<LoftSets> sets_by_loft(Table root);
+/// Overrides of a case that take this set whatever the loft.
+std::vector<std::string> with_set(std::vector<std::string> overrides, const std::string& set);
+/// The only set that is the choice of the loft to which it leads itself. `match`: the blow that meets the measured
+/// launch angle with that set. Throws solvers::NonConvergence where several sets are, or none.
+std::string consistent_set(const LoftSets& sets, const std::function<Blow(const std::string& set)>& match);
+
 /// Whether this model takes its contact from [contact]: restitution and friction.
 bool asks_law(std::string_view model);
 
 /// Refuses, with a sentence, an entry that has nothing of what `models` ask, and one that is used beyond what it saw
 /// unless `extrapolate = true` stands beside its name. Without a use, which a swing tells at its end, the first alone.
 void check_use(Table root, const std::optional<Use>& use, const std::vector<std::string>& models);
+/// The sentence of check_use about a blow that was found by a search; empty where the entries saw it.
+std::string used_beyond(const CaseFile& file, const std::vector<std::string>& overrides, const Blow& blow,
+                        const std::string& model);
 
 }  // namespace hosel::app

@@ -264,7 +264,7 @@ void Output::warn(std::string_view doubt) {
   if (state_->options.strict) throw Doubted(fmt::format("--strict: {}", doubt));
   state_->doubts.emplace_back(doubt);
   state_->page.doubt(doubt);
-  if (!quiet()) std::fputs(("warning: " + one_line(doubt) + '\n').c_str(), stderr);
+  if (!state_->options.inner) std::fputs(("warning: " + one_line(doubt) + '\n').c_str(), stderr);
   log(fmt::format("warning: {}", doubt));
 }
 

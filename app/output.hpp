@@ -28,6 +28,7 @@ struct OutputOptions {
   std::string command = {};               ///< what was typed, for the page
   std::optional<post::Units> units = {};  ///< of what is shown; absent: m/s, and the case's own on the page
   bool strict = false;                    ///< a doubt about the numbers is a failure
+  bool inner = false;                     ///< of a point of a study, which tells its doubts itself
   bool durable = true;                    ///< files wait for the disk: not worth it where they are thrown away
 };
 
@@ -82,7 +83,8 @@ class Output {
   void draw(const post::Figure& figure, std::string_view name, bool on_page = true);
   /// OUT/report.html as it grows.
   RunPage& page();
-  /// A doubt about the numbers: for the person, the log and `summary.json`. Throws Doubted where the run is strict.
+  /// A doubt about the numbers: for the person, even a quiet one's, the page, the log and `summary.json`. Throws
+  /// Doubted where the run is strict.
   void warn(std::string_view doubt);
   /// What the run could not do and its numbers do not suffer from: for the person, even a quiet one's, the page, the
   /// log and `summary.json`.

@@ -195,6 +195,12 @@ Blow read_blow(Table root, const std::vector<std::string>& models) {
   return blow;
 }
 
+void check_shaft(const Table& root, const Blow& blow, const std::vector<std::string>& models) {
+  for (const std::string& m : models)
+    if (!blow.club.shaft && (m == "fe-full-club" || m == "shaft-coupled"))
+      root.fail("models", fmt::format("{} needs the club's shaft: [shaft] with a `name`, or a table of its own", m));
+}
+
 std::string off_the_face(const Blow& blow) {
   const double toe = blow.delivery.impact_toe, high = blow.delivery.impact_high;
   const std::optional<FaceCompliance>& face = blow.club.head.compliance;

@@ -54,6 +54,8 @@ ContactLaw read_contact(Table root, const std::vector<std::string>& models);
 std::vector<std::string> read_models(Table root);
 /// Everything that the models of a case are asked about, from its tables.
 Blow read_blow(Table root, const std::vector<std::string>& models);
+/// Refuses a model of the whole club where the case has no shaft.
+void check_shaft(const Table& root, const Blow& blow, const std::vector<std::string>& models);
 /// A sentence where the ball is struck off the face; empty where it is struck on it: within the ellipse on which a
 /// compliant face deflects, or within what the widest heads of the rules of golf have (127 mm heel to toe, 71 mm high).
 std::string off_the_face(const Blow& blow);

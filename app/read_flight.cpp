@@ -42,11 +42,15 @@ models::FlightLaw read_law(Table& table) {
   const std::string name =
       table.text({"law", "aerodynamic coefficients: a published law (`hosel list`) or table"}, "ferguson-2022");
   if (name == "table") {
+    const models::TableLaw form = read_coefficients(table);
+    models::FlightLaw::Range spin{INFINITY, -INFINITY};  // of all rows
+    for (const models::TableLaw::Row& r : form.rows)
+      spin = {std::min(spin.low, r.spin.front()), std::max(spin.high, r.spin.back())};
     law = {.name = "table",
            .source = "the case",
-           .reynolds = {},
-           .spin = {},
-           .form = read_coefficients(table),
+           .reynolds = {form.rows.front().reynolds, form.rows.back().reynolds},
+           .spin = spin,
+           .form = form,
            .decay = {.rate = table.number({"spin_decay_per_s", "relative loss of spin rate per second"}, {0, 2})}};
   } else {
     law = published(table, "law", name);
@@ -235,6 +239,17 @@ std::optional<ShotChannel> find_shot_channel(std::string_view name, const std::o
   return {};
 }
 
+std::string outside_law(const FlightSetup& setup, const post::ShotFlight& shot) {
+  const models::Flight& flight = shot.flight;
+  if (!(flight.outside > 0)) return {};
+  const auto region = [](const models::FlightLaw::Range& re, const models::FlightLaw::Range& spin) {
+    return fmt::format("Re {:.0f} to {:.0f}, spin ratio {:.3f} to {:.3f}", re.low, re.high, spin.low, spin.high);
+  };
+  const models::FlightLaw& law = setup.conditions.law;
+  return fmt::format("{:.0f} % of the flight is outside the range of {} ({}); the flight has {}", 100 * flight.outside,
+                     law.name, region(law.reynolds, law.spin), region(flight.reynolds, flight.spin));
+}
+
 nlohmann::json report_flight(Output& out, const FlightSetup& setup, const std::string& name, const Launch& launch,
                              const Ball& ball, post::Table* by_law, bool draw) {
   constexpr double sample = 0.05;  // [s]
@@ -267,16 +282,8 @@ nlohmann::json report_flight(Output& out, const FlightSetup& setup, const std::s
   out.tell(fmt::format("\n{}:", how));  // the page has it as the table's heading
   out.show(post::budget_table(budget, setup.errors, setup.unit), "The flight: " + how);
   const models::Flight& flight = flights.front().shot.flight;
-  if (flight.outside > 0) {
-    const auto region = [](const models::FlightLaw::Range& re, const models::FlightLaw::Range& spin) {
-      return fmt::format("Re {:.0f} to {:.0f}, spin ratio {:.3f} to {:.3f}", re.low, re.high, spin.low, spin.high);
-    };
-    const models::FlightLaw& law = setup.conditions.law;
-    const std::string text = fmt::format(
-        "{}: {:.0f} % of the flight is outside the range of {} ({}); the flight has {}", name, 100 * flight.outside,
-        law.name, region(law.reynolds, law.spin), region(flight.reynolds, flight.spin));
-    out.warn(text);
-  }
+  if (const std::string text = outside_law(setup, flights.front().shot); !text.empty())
+    out.warn(fmt::format("{}: {}", name, text));
   const std::string file = out.file_name(name);
   if (draw) out.draw(post::trajectory_figure(name, flights), "figures/flight-" + file);
   post::VtkSeries(out.directory() / "vtk", "flight-" + file, post::VtkSeries::Form::surface)

@@ -52,6 +52,9 @@ struct ShotChannel {
 std::optional<ShotChannel> find_shot_channel(std::string_view name, const std::optional<FlightSetup>& flight,
                                              const Ball& ball);
 
+/// A sentence where part of a flight is outside the range of its law; empty else.
+std::string outside_law(const FlightSetup& setup, const post::ShotFlight& shot);
+
 /// The error budget as a table, the trajectories by every law as figure and lines for ParaView in OUT; returns the
 /// budget for the summary. `name` begins the files' names. Says where a law is used outside its range. With a table for
 /// files: gives it a row a law. Without `draw`: no figure.

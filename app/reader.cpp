@@ -185,7 +185,11 @@ Table::Table(std::shared_ptr<detail::Document> document, void* node, std::string
 void Table::fail(std::string_view key, std::string_view what) const {
   const toml::table& t = as_table(node_);
   const toml::node* node = key.empty() ? nullptr : t.get(key);
-  const std::string name = key.empty() ? path_ : dotted(path_, key);
+  std::string name = key.empty() ? path_ : dotted(path_, key);
+  if (!node && !key.empty())
+    for (auto&& [stated, value] : t)  // a quantity, by its stem: as the case has it, with its unit
+      if (const SplitName split = split_unit(stated.str()); split.unit && split.stem == key)
+        node = &value, name = dotted(path_, stated.str());
   throw InputError(
       fmt::format("{}: {}{}{}", place(*document_, node ? *node : t), name, name.empty() ? "" : ": ", what));
 }
@@ -367,6 +371,19 @@ double as_echoed(double x) { return std::isfinite(x) ? std::stod(fmt::format("{:
 
 }  // namespace
 
+namespace {
+
+/// A value as it is stated, in SI. An end of the range is itself in any unit: 350 g is 0.35 kg to the last digit.
+double to_si(double x, const Unit& unit, const Range& range) {
+  const double y = x * unit.si;
+  for (const double end : {range.min, range.max})
+    if (std::isfinite(end) && std::abs(y - end) <= 4 * std::numeric_limits<double>::epsilon() * std::abs(end))
+      return end;
+  return y;
+}
+
+}  // namespace
+
 double Table::quantity(Key key, std::string_view unit, Range si, std::optional<double> standard) {
   Access access{*document_, as_table(node_)};
   const Found f = find_quantity(*this, access, key.name, unit, !standard);
@@ -383,9 +400,10 @@ double Table::quantity(Key key, std::string_view unit, Range si, std::optional<d
     return x * f.unit->si;
   }
   const double x = read_number(*this, f.key, *f.node);
-  if (!si.contains(x * f.unit->si)) fail(f.key, fmt::format("{:g} is {}", x, si.sentence(*f.unit)));
+  const double in_si = to_si(x, *f.unit, si);
+  if (!si.contains(in_si)) fail(f.key, fmt::format("{:g} is {}", x, si.sentence(*f.unit)));
   access.echo(f.key, x);
-  return x * f.unit->si;
+  return in_si;
 }
 
 std::vector<double> Table::quantities(Key key, std::string_view unit, std::size_t size, Range si,
@@ -403,12 +421,12 @@ std::vector<double> Table::quantities(Key key, std::string_view unit, std::size_
   std::vector<double> out;  // in the case's unit, as it is echoed
   if (f.node)
     out = read_list(*this, f.key, *f.node, size, [&](double x) {
-      if (!si.contains(x * f.unit->si)) fail(f.key, fmt::format("{:g} is {}", x, si.sentence(*f.unit)));
+      if (!si.contains(to_si(x, *f.unit, si))) fail(f.key, fmt::format("{:g} is {}", x, si.sentence(*f.unit)));
     });
   else
     for (const double x : *standard) out.push_back(as_echoed(x / f.unit->si));
   access.echo(f.key, as_list(out));
-  for (double& x : out) x *= f.unit->si;
+  for (double& x : out) x = to_si(x, *f.unit, si);
   return out;
 }
 

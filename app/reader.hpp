@@ -161,7 +161,7 @@ class Table {
 
   /// Whether the command line says this key, by `--set`.
   bool set_by_command(std::string_view key) const;
-  /// An error at this key (or at the table where the key is empty or absent).
+  /// An error at this key, of a quantity at its stem with any unit (or at the table where the key is empty or absent).
   [[noreturn]] void fail(std::string_view key, std::string_view what) const;
 
  private:

@@ -16,6 +16,7 @@
 #include "app/version.hpp"
 #include "golf/parallel.hpp"
 #include "post/file.hpp"
+#include "post/labels.hpp"
 #include "solvers/blas.hpp"
 #include "solvers/errors.hpp"
 
@@ -186,7 +187,7 @@ void sweep_plan(const fs::path& where, const std::vector<std::string>& overrides
                                       {"points", p.plan.points},
                                       {"version", p.plan.version},
                                       {"fingerprint", p.plan.fingerprint}}));
-  out.say(fmt::format("{} points planned in {}", p.plan.points, root.string()));
+  out.say(fmt::format("{} planned in {}", post::counted(p.plan.points, "point"), root.string()));
 }
 
 void sweep_run(const fs::path& root, Shard shard, bool quiet) {

@@ -276,10 +276,14 @@ std::pair<std::string, std::string> panel_script(const Panel& p, int k, int widt
     }
     s += fmt::format("set ytics ({})\nset yrange [{}:0.5]\n", names, 0.5 - double(p.y_names.size()));
   }
+  if (p.y_down) s += "set yrange [*:*] reverse\n";
   // Marks and their bars stay clear of the frame.
   s += marks && !p.log_x && !p.log_y ? "set offsets graph 0.04, graph 0.04, graph 0.04, graph 0.04\n"
                                      : "unset offsets\n";
-  return {data, s + "plot " + plot + "\n" + (p.y_names.empty() ? "" : "set ytics autofreq\nset autoscale y\n")};
+  s += "plot " + plot + "\n";
+  if (!p.y_names.empty()) s += "set ytics autofreq\nset autoscale y\n";
+  if (p.y_down) s += "set yrange [*:*] noreverse\n";
+  return {data, s};
 }
 
 /// What a panel is called: its title, else what stands at its upright axis, without the unit.

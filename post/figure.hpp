@@ -28,6 +28,7 @@ struct Panel {
   std::string title = {};
   std::string x_label = {}, y_label = {};  ///< with units: "dynamic loft [deg]"
   bool log_x = false, log_y = false;
+  bool y_down = false;                    ///< y grows downwards
   std::vector<std::string> y_names = {};  ///< what stands at y = 0, -1, -2, ... in place of numbers
   std::vector<Series> series = {};
 

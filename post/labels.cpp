@@ -12,6 +12,10 @@ std::string spoken(std::string_view name) {
   return text;
 }
 
+std::string counted(std::size_t n, std::string_view what) {
+  return std::to_string(n) + " " + std::string(what) + (n == 1 ? "" : "s");
+}
+
 std::string symbol(std::string_view unit) {
   if (unit == "mps") return "m/s";
   if (unit == "kmh") return "km/h";
@@ -39,6 +43,8 @@ std::string symbol(std::string_view unit) {
 SpokenKey spoken_key(std::string_view key) {
   constexpr std::string_view celsius = "_degC";
   if (key.ends_with(celsius)) return {spoken(key.substr(0, key.size() - celsius.size())), "°C"};
+  for (const std::string_view impulse : {"_N_m_s", "_N_s"})  // no units of a key
+    if (key.ends_with(impulse)) return {spoken(key.substr(0, key.size() - impulse.size())), symbol(impulse.substr(1))};
   const SplitName split = split_unit(key);
   if (!split.unit) return {spoken(key), ""};
   const std::string unit = symbol(split.unit->suffix);
@@ -70,8 +76,6 @@ std::string label(std::string_view key) {
     if (const auto next = which.find("]["); next != which.npos) which.replace(next, 2, ",");
     key = key.substr(0, open);
   }
-  for (const auto& [end, unit] : {std::pair{"_N_m_s", " [N m s]"}, {"_N_s", " [N s]"}})  // no units of a key
-    if (key.ends_with(end)) return spoken(key.substr(0, key.size() - std::string_view(end).size())) + which + unit;
   const SpokenKey said = spoken_key(key);
   return which_of + said.words + which + (said.unit.empty() ? "" : " [" + said.unit + "]");
 }

@@ -8,6 +8,8 @@ namespace hosel::post {
 
 /// "club_speed" -> "club speed".
 std::string spoken(std::string_view name);
+/// "1 shot", "2 shots".
+std::string counted(std::size_t n, std::string_view what);
 /// A unit's suffix as it is printed: "mps" -> "m/s", "kg_m2" -> "kg m²".
 std::string symbol(std::string_view unit);
 /// A key's words and its unit as it is printed: "falloff_per_m2" -> "falloff", "1/m²". No unit: empty.

@@ -20,7 +20,8 @@ Figure trajectory_figure(std::string title, const std::vector<NamedFlight>& flig
              .x_label = fmt::format("towards the target [{}]", shown),
              .y_label = fmt::format("height [{}]", shown)},
       top = side;
-  top.title = "from above";  // the target to the right: left is up
+  top.title = "from above";  // the target to the right: left is up, and right is positive as in every table
+  top.y_down = true;
   top.y_label = fmt::format("right  <-  [{}]  ->  left", shown);
   // Many flights are told apart by their first words, "7-iron" of "7-iron, measured", in colour; by the others in
   // dashes.
@@ -66,7 +67,7 @@ Figure trajectory_figure(std::string title, const std::vector<NamedFlight>& flig
       height.x.push_back(x.x() / size(unit));
       height.y.push_back(x.z() / size(unit));
       aside.x.push_back(x.x() / size(unit));
-      aside.y.push_back(x.y() / size(unit) + 0.0);
+      aside.y.push_back(0.0 - x.y() / size(unit));
     };
     for (const models::FlightPoint& p : f.shot.flight.path) add(p.position);
     if (f.shot.run)

@@ -198,6 +198,24 @@ std::string strange_unit(std::string_view text) {
     const bool sides = side_of(unit.substr(0, slash), Sides::any) && side_of(unit.substr(slash + 1), Sides::any);
     if (slash > 0 && !sides) return word;  // `(T/H)` names two sides
   }
+  // One word alone where a unit would stand: `(furlongs)`, unless it is a side or says how the number was found.
+  static const std::set<std::string, std::less<>> harmless = {
+      "abs",        "absolute", "actual", "angle",    "average",      "avg",        "ball",      "calc",
+      "calculated", "camera",   "center", "centre",   "club",         "computed",   "corrected", "delivered",
+      "distance",   "dynamic",  "est",    "estimate", "estimated",    "face",       "filtered",  "final",
+      "flat",       "head",     "hor",    "horiz",    "horizontal",   "impact",     "initial",   "lateral",
+      "launch",     "max",      "mean",   "meas",     "measured",     "median",     "min",       "model",
+      "modeled",    "modelled", "net",    "norm",     "normalised",   "normalized", "optional",  "path",
+      "peak",       "radar",    "raw",    "relative", "right-handed", "rotation",   "side",      "sign",
+      "signed",     "spin",     "static", "target",   "test",         "total",      "tot",       "true",
+      "value",      "ver",      "vert",   "vertical"};
+  std::vector<std::string> alone = brackets(std::string(text));
+  if (alone.empty()) alone.emplace_back(text);  // a cell of the row of units
+  for (const std::string& inside : alone) {
+    const std::string word = trimmed(inside), known = plain(word);
+    const bool is_word = word.size() > 1 && std::ranges::all_of(word, [](unsigned char c) { return std::isalpha(c); });
+    if (is_word && unit_of(word).empty() && !harmless.contains(known) && !side_of(known, Sides::any)) return word;
+  }
   return "";
 }
 

@@ -16,6 +16,7 @@
 #include "app/terminal.hpp"
 #include "post/csv.hpp"
 #include "post/file.hpp"
+#include "post/labels.hpp"
 
 namespace hosel::app {
 namespace {
@@ -37,7 +38,7 @@ void write_csv(const fs::path& file, const std::vector<const Understood*>& colum
 
 /// The table of what was understood.
 void show(Session& x) {
-  fmt::print("{}: {} shots, cells separated by {}{}\n", x.file.string(), x.shots,
+  fmt::print("{}: {}, cells separated by {}{}\n", x.file.string(), post::counted(x.shots, "shot"),
              x.sheet.delimiter == "JSON"  ? "JSON's own signs"
              : x.sheet.delimiter == "tab" ? "tabs"
                                           : "'" + x.sheet.delimiter + "'",
@@ -50,11 +51,13 @@ void show(Session& x) {
   passed_over(x.sheet.headers_again, "repeated header", "repeated headers");
   passed_over(x.sheet.units_again, "repeated row of units", "repeated rows of units");
   passed_over(x.sheet.messages, "message without a shot", "messages without a shot");
-  if (x.other_clubs) fmt::print("  left out: {} shots with other clubs\n", x.other_clubs);
+  if (x.other_clubs) fmt::print("  left out: {} with other clubs\n", post::counted(x.other_clubs, "shot"));
   if (x.modelled)
-    fmt::print("  spin modelled, not measured, left out (--modelled takes it): {} of {} shots\n", x.modelled, x.shots);
+    fmt::print("  spin modelled, not measured, left out (--modelled takes it): {} of {}\n", x.modelled,
+               post::counted(x.shots, "shot"));
   if (x.left_handed)
-    fmt::print("  left-handed, mirrored to a right-handed player's: {} of {} shots\n", x.left_handed, x.shots);
+    fmt::print("  left-handed, mirrored to a right-handed player's: {} of {}\n", x.left_handed,
+               post::counted(x.shots, "shot"));
   if (const Understood* clubs = x.find("club")) {
     std::map<std::string, std::size_t> count;
     for (const std::string& name : clubs->cells) ++count[name.empty() ? "(no club)" : name];

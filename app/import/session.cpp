@@ -247,7 +247,10 @@ class Reading {
     out_.shots = sheet.rows.size();
     find_speed_unit();
     out_.columns.reserve(sheet.names.size() + 4);  // pointers into it stay good
-    std::set<std::string> quantities;
+    std::set<std::string> quantities, said_by_hand;
+    for (std::size_t c = 0; c < sheet.names.size(); ++c)
+      if (const std::string* hand = by_hand_.of(sheet.names[c], sheet.names); hand && !hand->empty() && !is_empty(c))
+        said_by_hand.insert(split_unit(*hand).stem);
     for (std::size_t c = 0; c < sheet.names.size(); ++c) {
       const std::string& header = sheet.names[c];
       const std::string* hand = by_hand_.of(header, sheet.names);
@@ -260,8 +263,9 @@ class Reading {
       } else if (!hand && role_[c].empty()) {
         q = d_.quantity_of(header);
       }
-      // A second column of one quantity is kept aside, and one that is empty.
-      const bool second = q && !is_empty(c) && !quantities.insert(q->name).second;
+      // A second column of one quantity is kept aside, and one that is empty; what --column says is the first.
+      const bool beaten = q && !hand && said_by_hand.contains(q->name);
+      const bool second = q && !is_empty(c) && (beaten || !quantities.insert(q->name).second);
       if (!q || second || is_empty(c)) {
         keep(c);
         if (second && out_.columns.back().name.empty())

@@ -107,6 +107,10 @@ class CalibrateBallJob final : public Job {
       time_got.add(p.speed, 1e3 * p.contact_time);
     }
     out.page().answer(bounce.shown());
+    for (const auto& p : fit.points)
+      if (p.speed == problem_.wall.contact_speed)
+        out.say(fmt::format("contact at {:g} m/s: {:.4f} ms, wanted {:g} +- {:g}", p.speed, 1e3 * p.contact_time,
+                            1e3 * problem_.wall.contact_time, 1e3 * problem_.wall.contact_time_sigma));
     summary["points"] = bounce.json();
     time_wanted.x = {problem_.wall.contact_speed};
     time_wanted.y = {1e3 * problem_.wall.contact_time};
@@ -134,14 +138,63 @@ class CalibrateBallJob final : public Job {
     out.draw(figure, "fit");
     if (!fit.shots.empty()) out.draw(shot_figure(fit), "shots");
     withdraw_offers(out);
-    if (fit.converged) offer_found(out, fit);
-    if (!fit.converged) out.warn("the fit has not converged: " + fit.report);
+    std::vector<std::string> doubts = doubts_of(fit);
+    if (!fit.converged) doubts.insert(doubts.begin(), "the fit has not converged: " + fit.report);
+    for (const std::string& doubt : doubts) out.warn(doubt);
+    if (doubts.empty()) offer_found(out, fit);
+    else out.say("nothing is offered to the library: see the warnings");
     out.write_summary(summary);
   }
 
  private:
   using What = models::FreeParameter::What;
   using Points = std::vector<models::ObliquePoint>;
+
+  /// A parameter that the search held back, and a target that the ball misses.
+  std::vector<std::string> doubts_of(const models::BallCalibration& fit) const {
+    constexpr double most = 3;  // standard deviations
+    std::vector<std::string> out;
+    for (std::size_t p = 0; p < fit.names.size(); ++p)
+      if (fit.at_bound[p])
+        out.push_back(
+            fmt::format("{} is at its bound, {:.4g}: the search goes no further", fit.names[p], fit.values[p]));
+    const auto target = [&](const std::string& name, double wanted, double got, double sigma, std::string_view unit) {
+      if (const double off = std::abs(got - wanted) / sigma; off > most)
+        out.push_back(fmt::format("{}: wanted {:.4g}{}, got {:.4g}{}, {:.1f} standard deviations off", name, wanted,
+                                  unit, got, unit, off));
+    };
+    const models::NormalImpactTarget& wall = problem_.wall;
+    for (const models::NormalImpactPoint& p : fit.points) {
+      target(fmt::format("restitution at {:g} m/s", p.speed), p.target, p.restitution, wall.restitution_sigma, "");
+      if (p.speed == wall.contact_speed)
+        target(fmt::format("contact time at {:g} m/s", p.speed), 1e3 * wall.contact_time, 1e3 * p.contact_time,
+               1e3 * wall.contact_time_sigma, " ms");
+    }
+    if (fit.bounce)
+      target("tangential restitution off the plate", problem_.bounce->tangential_restitution, *fit.bounce,
+             problem_.bounce->sigma, "");
+    // Of many shots a few are far off: they are judged together.
+    double square = 0, worst = 0;
+    std::size_t count = 0;
+    std::string named;
+    for (const models::ObliquePoint& p : fit.shots) {
+      if (!p.seen) continue;
+      const models::ObliqueTarget& t = target_of(p);
+      const auto shot = [&](std::string_view what, double deviation) {
+        square += deviation * deviation;
+        ++count;
+        if (std::abs(deviation) <= worst) return;
+        worst = std::abs(deviation);
+        named = fmt::format("{} of {}", what, p.name);
+      };
+      shot("spin", off(p.spin_rate, t.spin_rate) / (100 * t.spin_sigma));
+      if (t.ball_speed) shot("ball speed", off(p.ball_speed, *t.ball_speed) / (100 * t.ball_speed_sigma));
+    }
+    if (const double rms = std::sqrt(square / double(std::max<std::size_t>(count, 1))); rms > most)
+      out.push_back(fmt::format("the shots are missed by {:.1f} of their standard deviations (rms), the {} by {:.1f}",
+                                rms, named, worst));
+    return out;
+  }
 
   /// The ball, and the friction that was fitted with it. Faces, strikes and heads are the clubs' own.
   void offer_found(Output& out, const models::BallCalibration& fit) const {
@@ -183,6 +236,7 @@ class CalibrateBallJob final : public Job {
   void read_target(Table& target) {
     models::NormalImpactTarget& wall = problem_.wall;
     wall.speeds = target.quantities({"speeds", "of the normal impacts on a wall"}, "mps", 0, {1, 100}, wall.speeds);
+    if (wall.speeds.empty()) target.fail("speeds", "name at least one speed");
     if (target.has("restitutions")) {
       wall.restitutions =
           target.numbers({"restitutions", "one for each speed, in place of a law"}, wall.speeds.size(), {0, 1});
@@ -195,6 +249,10 @@ class CalibrateBallJob final : public Job {
                                            wall.restitution_sigma);
     wall.contact_speed =
         target.quantity({"contact_speed", "at which the contact time is wanted"}, "mps", {1, 100}, wall.contact_speed);
+    if (std::ranges::find(wall.speeds, wall.contact_speed) == wall.speeds.end())
+      target.fail(target.has_quantity("contact_speed") ? "contact_speed" : "speeds",
+                  fmt::format("the contact time is wanted at {:g} m/s, which is none of the speeds ({:g} m/s)",
+                              wall.contact_speed, fmt::join(wall.speeds, ", ")));
     wall.contact_time = target.quantity({"contact_time", "wanted"}, "ms", Range::positive(), wall.contact_time);
     wall.contact_time_sigma = target.quantity({"contact_time_sigma", "standard error of the contact time wanted"}, "ms",
                                               Range::positive(), wall.contact_time_sigma);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <stdexcept>
@@ -15,6 +16,7 @@
 #include "app/read_flight.hpp"
 #include "app/read_options.hpp"
 #include "app/read_swing.hpp"
+#include "app/solution_doubts.hpp"
 #include "app/stop.hpp"
 #include "app/version.hpp"
 #include "golf/face_library.hpp"
@@ -46,6 +48,7 @@ class ImpactJob final : public Job {
     own_ = read_side(root);
     missing_ = own_.missing;
     matched_ = root.flag({"matched_launch", "turn the loft until the launch angle is the measured one"}, false);
+    if (matched_) own_.file = std::make_shared<CaseFile>(file, file.overrides());
     record_ = read_recorder(root);
     record_.checkpoints = !own_.swung;  // what its shaft carries is told of the whole blow
     if (auto measured = root.optional_table("measured")) read_measured(*measured);
@@ -62,6 +65,7 @@ class ImpactJob final : public Job {
       CaseFile other(file, set);
       compared_.push_back(read_side(other.root()));
       compared_.back().name = name;
+      if (matched_) compared_.back().file = std::make_shared<CaseFile>(file, set);
       for (const std::string_view key : kOfTheCase) other.root().leave({key});
       try {
         other.finish();
@@ -80,15 +84,17 @@ class ImpactJob final : public Job {
     if (own_.flight) own_.flight->show_in(out);
     for (Side& side : compared_)
       if (side.flight) side.flight->show_in(out);
+    for (Side& side : compared_) choose_sets(side);
+    choose_sets(own_);
     nlohmann::json summary;
     std::vector<post::LaunchColumn> columns;
     std::vector<fs::path> files;
     std::vector<FeRun> runs;
-    for (const Side& side : compared_) compare(side, columns, summary["compared"][side.name]);
+    for (const Side& side : compared_) compare(out, side, columns, summary["compared"][side.name]);
     const std::size_t compared = columns.size();
     Blow blow = own_.blow;  // of the last model
     for (const Entry& entry : own_.models) {
-      blow = at_measured_launch(entry, own_.blow);
+      blow = at_measured_launch(entry, entry.blow.value_or(own_.blow));
       nlohmann::json& said = summary["models"][entry.name];
       if (const models::Impact* model = entry.fe()) {
         const models::FeOutcome outcome = run_fe(out, entry.name, *model, blow, home(out, entry), files, runs);
@@ -110,6 +116,7 @@ class ImpactJob final : public Job {
       }
       note_oblique(blow, columns.back(), said);
       if (matched_) note_match(out, columns.back(), blow, said);
+      doubt_use(out, own_, entry, blow);
     }
     for (std::size_t c = compared; own_.flight && c < columns.size(); ++c) {
       columns[c].flight = landed(*own_.flight, columns[c].launch, own_.blow.ball);
@@ -127,6 +134,10 @@ class ImpactJob final : public Job {
       if (!c.flight) continue;
       nlohmann::json& said = summary["flights"][c.title] = post::to_json(*c.flight);
       if (c.coarser_flight) said["numerical_error"] = numerical_error(*c.flight, *c.coarser_flight);
+      const Side* other = side_of_column(std::size_t(&c - columns.data()));
+      if (&c != &columns.back())  // the last one's doubt is told with its budget
+        if (const std::string text = outside_law(other ? *other->flight : *own_.flight, *c.flight); !text.empty())
+          out.warn(fmt::format("{}: {}", c.title, text));
       // Where the errors of the answer's carry come from; the other columns have theirs in the summary.
       if (&c == &columns.back()) try {
           said["budget"] = report_flight(out, *own_.flight, c.title, c.launch, own_.blow.ball);
@@ -153,6 +164,8 @@ class ImpactJob final : public Job {
     std::string name;
     std::unique_ptr<models::ImpactModel> model;
     std::unique_ptr<models::ImpactModel> companion = nullptr;  ///< the same on coarser numerics
+    std::string set = {};           ///< of the ball's parameters that the matched loft chooses; empty: the case's
+    std::optional<Blow> blow = {};  ///< with that set
     const models::Impact* fe() const { return model->impact(); }
   };
   /// The case itself, or one that it is compared with.
@@ -164,6 +177,8 @@ class ImpactJob final : public Job {
     models::FeImpactOptions fe;
     std::vector<Entry> models;
     std::optional<FlightSetup> flight;
+    std::shared_ptr<CaseFile> file = {};  ///< of a side whose loft is sought
+    std::optional<LoftSets> sets = {};    ///< of the ball, where the loft chooses one of several
     bool yields() const { return fe.face || blow.club.head.compliance; }
   };
 
@@ -171,8 +186,10 @@ class ImpactJob final : public Job {
     Side side;
     const std::vector<std::string> names = read_models(root);
     side.blow = read_blow(root, names);
+    check_shaft(root, side.blow, names);
     models::Options options = read_options(root, names, side.blow);
     side.flight = read_optional_flight(root);
+    side.sets = sets_by_loft(root);
     if (const auto swung = read_swung_club(root, names, options.shaft_mount)) {
       side.swung = true;
       if (!swung->motion.present) {
@@ -248,6 +265,37 @@ class ImpactJob final : public Job {
     return found;
   }
 
+  /// Of a ball of several sets, each model takes the one that its own matched loft chooses, wherever the search begins.
+  void choose_sets(Side& side) const {
+    if (!matched_ || !side.sets) return;
+    std::map<std::string, Side> of_set;
+    for (std::size_t k = 0; k < side.models.size(); ++k) {
+      Entry& entry = side.models[k];
+      if (!side.sets->matter_to(entry.name)) continue;
+      const auto with = [&](const std::string& set) -> Side& {
+        const auto [at, fresh] = of_set.try_emplace(set);
+        if (fresh) at->second = read_side(CaseFile(*side.file, with_set(side.file->overrides(), set)).root());
+        return at->second;
+      };
+      entry.set = consistent_set(
+          *side.sets, [&](const std::string& set) { return at_measured_launch(with(set).models[k], with(set).blow); });
+      Side& chosen = with(entry.set);
+      entry.model = std::move(chosen.models[k].model);
+      entry.companion = std::move(chosen.models[k].companion);
+      entry.blow = chosen.blow;
+    }
+  }
+
+  /// A matched loft may lie where what is used was never seen.
+  void doubt_use(Output& out, const Side& side, const Entry& entry, const Blow& blow) const {
+    if (!matched_) return;
+    std::vector<std::string> set = side.file->overrides();
+    if (!entry.set.empty()) set.push_back(fmt::format("ball.reduced=\"{}\"", entry.set));
+    if (const std::string text = used_beyond(*side.file, set, blow, entry.name); !text.empty())
+      out.warn(fmt::format("{}{}{}, at the loft of {:.2f} deg that was found: {}", side.name,
+                           side.name.empty() ? "" : ": ", entry.name, degrees(blow.delivery.dynamic_loft), text));
+  }
+
   void note_match(Output& out, post::LaunchColumn& column, const Blow& blow, nlohmann::json& said) const {
     column.loft_deg = degrees(blow.delivery.dynamic_loft);
     said["dynamic_loft_deg"] = *column.loft_deg;
@@ -262,20 +310,30 @@ class ImpactJob final : public Job {
     } catch (const std::invalid_argument&) { return {}; }
   }
 
+  /// Of what the case is compared with; nullptr of the case itself.
+  const Side* side_of_column(std::size_t column) const {
+    for (const Side& side : compared_) {
+      if (column < side.models.size()) return &side;
+      column -= side.models.size();
+    }
+    return nullptr;
+  }
+
   /// Columns without records: the same models, another ball, face, friction.
-  void compare(const Side& side, std::vector<post::LaunchColumn>& columns, nlohmann::json& said) const {
+  void compare(Output& out, const Side& side, std::vector<post::LaunchColumn>& columns, nlohmann::json& said) const {
     const std::size_t first = columns.size(), count = side.models.size();
     columns.resize(first + count);
     std::vector<Blow> blows(count);
     for_all(std::size_t{0}, count, [&](std::size_t k) {
       const Entry& entry = side.models[k];
-      blows[k] = at_measured_launch(entry, side.blow);
+      blows[k] = at_measured_launch(entry, entry.blow.value_or(side.blow));
       columns[first + k] = {fmt::format("{}: {}", side.name, entry.name),
                             models::checked_launch(*entry.model, blows[k])};
       if (side.flight) columns[first + k].flight = landed(*side.flight, columns[first + k].launch, side.blow.ball);
     });
     for (std::size_t k = 0; k < count; ++k) {
       nlohmann::json& one = said[side.models[k].name] = post::to_json(columns[first + k].launch);
+      doubt_use(out, side, side.models[k], blows[k]);
       note_oblique(blows[k], columns[first + k], one);
       if (matched_) columns[first + k].loft_deg = one["dynamic_loft_deg"] = degrees(blows[k].delivery.dynamic_loft);
     }
@@ -374,19 +432,7 @@ class ImpactJob final : public Job {
                           const models::FeOutcome& outcome) const {
     const models::FeImpactResult& r = outcome.result;
     const double closure = r.ledger.closure / r.ledger.initial;
-    // What the blow can change is the energy of the relative motion, not that of a head that flies on.
-    const double head = blow.club.head.mass, ball = blow.ball.mass;
-    const double relative = 0.5 * (std::isfinite(head) ? head * ball / (head + ball) : ball) *
-                            outcome.frame.approach.squaredNorm();
-    const auto doubt = [&](const char* what, double value, double limit, const char* remedy) {
-      if (std::abs(value) > limit)
-        out.warn(fmt::format("{}: {} is {:.2g} (wanted: below {:g}): {}", name, what, value, limit, remedy));
-    };
-    doubt("the energy unaccounted for, of that of the relative motion,", r.ledger.closure / relative, 0.005,
-          "more steps_per_contact");
-    doubt("the penetration, of the compression,", r.penetration / r.compression, 0.02, "a higher contact.penalty");
-    doubt("the elastic slip, of the compression,", r.creep / r.compression, 0.02,
-          "a higher contact.tangential_penalty");
+    for (const SolutionDoubt& d : solution_doubts(blow, outcome)) out.warn(fmt::format("{}: {}", name, d.sentence()));
     // Pressure alone turns no sphere; but the ball is flattened, and a face that turns or dishes carries the flat
     // round.
     if (const double spin = outcome.launch.spin.norm(); own_.blow.contact.patch.coefficient == 0 && spin > 1)
@@ -402,7 +448,7 @@ class ImpactJob final : public Job {
                         {"peak_force_N", r.peak_force},
                         {"peak_time_ms", 1e3 * r.peak_time},
                         {"compression_mm", 1e3 * r.compression},
-                        {"closure_of_relative_energy", r.ledger.closure / relative},
+                        {"closure_of_relative_energy", r.ledger.closure / relative_energy(blow, outcome)},
                         {"penetration_of_compression", r.penetration / r.compression},
                         {"slip_error_of_compression", r.creep / r.compression},
                         {"penetration_um", 1e6 * r.penetration},

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "post/csv.hpp"
+#include "post/digits.hpp"
 #include "post/scatter.hpp"
 #include "post/table.hpp"
 #include "solvers/errors.hpp"
@@ -25,7 +26,7 @@ std::string spread(const std::vector<double>& values, double unit, int digits) {
   double mean = 0, square = 0;
   for (const double v : values) mean += v / double(values.size());
   for (const double v : values) square += (v - mean) * (v - mean);
-  std::string said = fmt::format("{:.{}f}", mean / unit + 0.0, digits);
+  std::string said = post::fixed(mean / unit, digits);
   if (values.size() == 1) return said;
   return fmt::format("{} ± {:.{}f}", said, std::sqrt(square / double(values.size() - 1)) / unit, digits);
 }

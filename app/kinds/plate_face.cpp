@@ -22,6 +22,7 @@
 #include "models/fe/plate_strike.hpp"
 #include "post/digits.hpp"
 #include "post/face_map.hpp"
+#include "post/labels.hpp"
 #include "post/launch_table.hpp"
 #include "post/table.hpp"
 #include "post/vtk_series.hpp"
@@ -142,6 +143,7 @@ class PlateFaceJob final : public PointJob {
     const std::shared_ptr<const models::PlateFace> plate = plate_->on(blow_.club.head.face);
     const models::PlateStrike strike(plate, blow_.club.head);
     json summary;
+    doubt_places(out);
     show_maps(out, strike, summary);
     show_plate(out, *plate, summary);
     show_blows(out, points, summary);
@@ -150,6 +152,25 @@ class PlateFaceJob final : public PointJob {
   }
 
  private:
+  /// Places beside the plate: one doubt, with the place farthest out.
+  void doubt_places(Output& out) const {
+    const mesh::PlateOutline& outline = plate_->design().outline;
+    const Vector2d reach = outline.extent();
+    std::size_t off = 0;
+    Vector2d worst = Vector2d::Zero();
+    for (const Place& place : places_) {
+      if (outline.share(place.at) < 1) continue;
+      ++off;
+      if (place.at.norm() > worst.norm()) worst = place.at;
+    }
+    if (off > 0)
+      out.warn(fmt::format(
+          "the ball is struck off the face, which reaches {:g} mm aside and {:g} mm up, at {} of {}. "
+          "The farthest: {:g} mm towards the {} and {:g} mm {}",
+          1e3 * reach.x(), 1e3 * reach.y(), off, post::counted(places_.size(), "place"), 1e3 * std::abs(worst.x()),
+          worst.x() > 0 ? "heel" : "toe", 1e3 * std::abs(worst.y()), worst.y() < 0 ? "down" : "up"));
+  }
+
   struct Struck {
     Vector2d place;
     models::FeImpactOptions fe;
@@ -312,14 +333,13 @@ class PlateFaceJob final : public PointJob {
       if (!halved)
         verdict = "this face has no verdict by the rules' test: on a coarser mesh it has no characteristic time there";
       else if (without == 0 || longest >= kRulesTime + kRulesTolerance) verdict = rules_verdict(longest, error);
-      const double toe = -1e3 * slowest.x() + 0.0, high = 1e3 * slowest.y() + 0.0;
+      const std::string toe = post::fixed(-1e3 * slowest.x(), 1), high = post::fixed(1e3 * slowest.y(), 1);
       out.say(fmt::format("over the face: at most {:.1f} us and {:.4f}; {} of {} places beyond {:.0f} us",
                           1e6 * longest, fastest, beyond, inside, 1e6 * (kRulesTime + kRulesTolerance)));
-      out.say(
-          fmt::format("{}: {:.1f}{} us at toe {:.1f}, high {:.1f} mm; at most {:.0f} us and a tolerance of {:.0f} us",
-                      verdict, 1e6 * longest, halved ? fmt::format(" +- {:.1f}", 1e6 * error) : "", toe, high,
-                      1e6 * kRulesTime, 1e6 * kRulesTolerance));
-      where = fmt::format("{:.1f}{} µs at toe {:.1f}, high {:.1f} mm", 1e6 * longest,
+      out.say(fmt::format("{}: {:.1f}{} us at toe {}, high {} mm; at most {:.0f} us and a tolerance of {:.0f} us",
+                          verdict, 1e6 * longest, halved ? fmt::format(" +- {:.1f}", 1e6 * error) : "", toe, high,
+                          1e6 * kRulesTime, 1e6 * kRulesTolerance));
+      where = fmt::format("{:.1f}{} µs at toe {}, high {} mm", 1e6 * longest,
                           halved ? fmt::format(" ± {:.1f}", 1e6 * error) : "", toe, high);
       over = fmt::format("at most {:.1f} µs over the face", 1e6 * longest);
       if (halved) summary["characteristic_time_error_us"] = 1e6 * error;
@@ -412,7 +432,7 @@ class PlateFaceJob final : public PointJob {
     for (const Place& place : places_) {
       const json& p = points[place.blow];
       const auto launch = launch_at(place, points);
-      const double side = place.image ? -1 : 1, toe = -1e3 * place.at.x(), high = 1e3 * place.at.y();
+      const double side = place.image ? -1 : 1, toe = -1e3 * place.at.x() + 0.0, high = 1e3 * place.at.y() + 0.0;
       if (!launch) {
         table.rows.push_back({fmt::format("{:g}", toe), fmt::format("{:g}", high), "no answer", "", "", "", "", ""});
         speeds.push_back(std::nan(""));
@@ -441,17 +461,17 @@ class PlateFaceJob final : public PointJob {
     out.page().answer("largest stress", fmt::format("{:.0f} MPa", 1e-6 * stress), "von Mises, over these blows");
     if (const auto yield = plate_->design().yield; yield && stress > *yield)
       out.warn(
-          fmt::format("the largest stress, {:.0f} MPa at toe {:.1f}, high {:.1f} mm, exceeds the yield strength of "
+          fmt::format("the largest stress, {:.0f} MPa at toe {}, high {} mm, exceeds the yield strength of "
                       "{:.0f} MPa: this face yields, and the plate of this model does not",
-                      1e-6 * stress, stressed.x(), stressed.y(), 1e-6 * *yield));
+                      1e-6 * stress, post::fixed(stressed.x(), 1), post::fixed(stressed.y(), 1), 1e-6 * *yield));
     summary["peak_stress_MPa"] = 1e-6 * stress;
     summary["energy_closure"] = closure;
     for (const double v : speeds) summary["ball_speed_mps"].push_back(std::isfinite(v) ? json(v) : json());
     if (std::ranges::all_of(speeds, [](double v) { return std::isfinite(v); })) {
       const double least = std::ranges::min(speeds),
                    mean = std::accumulate(speeds.begin(), speeds.end(), 0.0) / double(speeds.size());
-      out.say(fmt::format("ball speed over {} places: {:.2f} m/s in the mean, at least {:.2f} m/s", speeds.size(), mean,
-                          least));
+      out.say(fmt::format("ball speed over {}: {:.2f} m/s in the mean, at least {:.2f} m/s",
+                          post::counted(speeds.size(), "place"), mean, least));
       summary["mean_ball_speed_mps"] = mean;
       summary["least_ball_speed_mps"] = least;
     }
@@ -468,8 +488,8 @@ class PlateFaceJob final : public PointJob {
                    peak = std::abs(points[i].at("peak_stress_Pa").get<double>() -
                                    finer.at("peak_stress_Pa").get<double>());
       out.say(fmt::format("{} at toe {:g}, high {:g} mm: {:.3f} m/s, {:.0f} rpm, {:.1f} MPa of difference",
-                          blows_[i].companion, -1e3 * blows_[i].place.x(), 1e3 * blows_[i].place.y(), speed, rpm(spin),
-                          1e-6 * peak));
+                          blows_[i].companion, -1e3 * blows_[i].place.x() + 0.0, 1e3 * blows_[i].place.y() + 0.0, speed,
+                          rpm(spin), 1e-6 * peak));
       solved.rows.push_back({blows_[i].companion == "coarser" ? "a coarser mesh and longer steps" : blows_[i].companion,
                              post::fixed(speed, 3), post::fixed(rpm(spin), 0), post::fixed(1e-6 * peak, 1)});
       summary["numerical_error"][blows_[i].companion] = {
@@ -480,7 +500,7 @@ class PlateFaceJob final : public PointJob {
       out.page().section("How well it was solved",
                          fmt::format("<p class='soft'>By how much the blow at toe {:g}, high {:g} mm moves with other "
                                      "numerics.</p>{}",
-                                     -1e3 * at.x(), 1e3 * at.y(), solved.html()));
+                                     -1e3 * at.x() + 0.0, 1e3 * at.y() + 0.0, solved.html()));
     out.page().section(solved.rows.size() > 1 ? "" : "How well it was solved",
                        fmt::format("<p><small>Energy unaccounted for: at most {:.1e} of the initial energy of a "
                                    "blow.</small></p>",

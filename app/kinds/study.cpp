@@ -1,9 +1,11 @@
 #include "app/kinds/kinds.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <tbb/enumerable_thread_specific.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <mutex>
@@ -34,6 +36,7 @@
 #include "app/study/table.hpp"
 #include "app/sweep.hpp"
 #include "post/file.hpp"
+#include "post/labels.hpp"
 
 namespace hosel::app {
 namespace fs = std::filesystem;
@@ -52,6 +55,15 @@ void flatten(const json& j, const std::string& name, json& out) {
   } else if (j.is_boolean()) {
     out[name] = j.get<bool>() ? 1 : 0;
   }
+}
+
+/// "; it has ...": names that end as the wanted one does, else how many there are.
+std::string nearest_ending(const std::string& wanted, const std::vector<std::string>& names) {
+  std::vector<std::string> alike;
+  for (const std::string& n : names)
+    if (n.substr(n.rfind('.') + 1) == wanted.substr(wanted.rfind('.') + 1)) alike.push_back(n);
+  return alike.empty() ? fmt::format("; it has {} others, in summary.json of the case's own run", names.size())
+                       : fmt::format("; it has {}", fmt::join(alike, ", "));
 }
 
 /// The studies that are being read, outermost first, and their points: one that studies itself would never end.
@@ -143,7 +155,19 @@ class StudyJob final : public PointJob {
 
   json compute(std::size_t point, const fs::path& scratch) const override {
     const std::size_t d = point / table_.models.size();
-    return studied_ ? compute_case(overrides(d), scratch) : compute_blow(d, point % table_.models.size());
+    if (!studied_) return compute_blow(d, point % table_.models.size());
+    json result = compute_case(overrides(d), scratch);
+    // An output that the case does not have is told before all points are computed.
+    if (!result.contains("skipped"))
+      for (const std::string& o : table_.outputs)
+        if (!result.contains(o)) {
+          std::vector<std::string> names;
+          for (const auto& [name, value] : result.items())
+            if (value.is_number()) names.push_back(name);
+          throw InputError(fmt::format("outputs: point {} has no number '{}' in its summary{}", point, o,
+                                       or_nearest(o, names, nearest_ending(o, names))));
+        }
+    return result;
   }
 
   void report(Output& out, const std::vector<json>& points) const override {
@@ -155,6 +179,8 @@ class StudyJob final : public PointJob {
     for (const std::string& row : left_out_) out.lack("left out, since its recording is not there: " + row);
     for (const json& p : points)
       if (p.contains("skipped")) return out.skip(p["skipped"].get<std::string>());
+    tell_sets(out);
+    tell_doubts(out, points);
     StudyTable table = table_;
     const bool named = !table.outputs.empty();
     table.fill(points);
@@ -215,11 +241,57 @@ class StudyJob final : public PointJob {
     out.page().answer("points", fmt::format("{}", points.size()),
                       fmt::format("{} without an answer", summary["failed"].get<int>()));
     out.write_summary(summary);
-    out.tell(fmt::format("{} points, {} without an answer; the table is {}", points.size(),
+    out.tell(fmt::format("{}, {} without an answer; the table is {}", post::counted(points.size(), "point"),
                          summary["failed"].get<int>(), (out.directory() / "points.csv").string()));
   }
 
  private:
+  /// One head that two sets of parameters answer for: the answers jump where the loft passes from one to the other.
+  void tell_sets(Output& out) const {
+    for (const auto& [head, lofts] : lofts_of_sets_) {
+      if (lofts.size() < 2) continue;
+      std::vector<std::string> ranges;
+      for (const auto& [set, of] : lofts)
+        ranges.push_back(fmt::format("'{}' {:.3g} to {:.3g} deg", set, of.low, of.high));
+      out.warn(fmt::format(
+          "the loft chooses between {} sets of the ball's parameters, and answers jump from one to the next (spin "
+          "loft: {}): ball.reduced names one for all points",
+          lofts.size(), fmt::join(ranges, ", ")));
+    }
+  }
+
+  /// What the points doubt of themselves: one sentence of a kind, with the worst of them.
+  void tell_doubts(Output& out, const std::vector<json>& points) const {
+    struct Worst {
+      std::size_t count = 0, point = 0;
+      double size = 0;
+      std::string sentence;
+    };
+    std::vector<std::pair<std::string, Worst>> kinds;
+    for (std::size_t p = 0; p < points.size(); ++p) {
+      if (!points[p].contains("doubts")) continue;
+      for (const json& d : points[p]["doubts"]) {
+        const std::string kind = d["kind"];
+        auto at = std::ranges::find(kinds, kind, &std::pair<std::string, Worst>::first);
+        if (at == kinds.end()) at = kinds.insert(at, {kind, {}});
+        Worst& worst = at->second;
+        const double size = std::abs(d["size"].get<double>());
+        if (worst.count++ > 0 && size <= worst.size) continue;
+        worst.point = p, worst.size = size, worst.sentence = d["sentence"];
+      }
+    }
+    for (const auto& [kind, worst] : kinds) {
+      const std::string where = table_.design.said(worst.point / table_.models.size());
+      out.warn(fmt::format("{} of {} points: {}. The worst{}{}: {}", worst.count, points.size(), kind,
+                           where.empty() ? "" : ", ", where, worst.sentence));
+    }
+  }
+
+  static void add_doubts(const std::vector<PointDoubt>& doubts, json& result) {
+    for (const PointDoubt& d : doubts)
+      result["doubts"].push_back({{"kind", d.kind}, {"size", d.size}, {"sentence", d.sentence}});
+  }
+
   /// What points that answered do not have is in no mean, effect or map.
   void tell_missing(Output& out, const StudyTable& table, const std::vector<json>& points) const {
     for (const StudySeries& s : table.series) {
@@ -414,6 +486,7 @@ class StudyJob final : public PointJob {
     }
     CaseFile one(*blow_, overrides(d));
     const StudyBlow asked = read_study_blow(one.root());
+    check_shaft(one.root(), asked.blow, asked.models);
     if (asked.models.size() != table_.models.size())
       root.fail("models", "a point may not change how many models answer");
     if (const auto m = measured_launch_angle(d); m && conditions_.matched_launch)
@@ -425,6 +498,7 @@ class StudyJob final : public PointJob {
     if (conditions_.matched_launch && !launch_angle(d))
       root.fail("matched_launch",
                 fmt::format("needs a measured launch_angle of every point ({})", table_.design.said(d)));
+    note_set(asked);
     if (asked.swung && !asked.swung->motion.present) motion_ = asked.swung->motion.file;
     if (asked.swung && conditions_.matched_launch) root.fail("matched_launch", "the swing says the loft");
     if (!asked.models.front().empty() && std::isfinite(asked.blow.club.head.mass))
@@ -438,10 +512,23 @@ class StudyJob final : public PointJob {
     for (const StudySolve& s : solves_)
       for (const double end : {s.low, s.high}) {
         CaseFile sought(*blow_, with(overrides(d), s, end, true));
-        read_study_blow(sought.root());
+        note_set(read_study_blow(sought.root()));
         leave_study_keys(sought.root());
         sought.finish();
       }
+  }
+
+  /// Under matched_launch the loft that was found chooses, point by point.
+  void note_set(const StudyBlow& asked) {
+    if (!asked.sets || conditions_.matched_launch) return;
+    if (std::ranges::none_of(asked.models, [&](const std::string& m) { return asked.sets->matter_to(m); })) return;
+    const NamedContact* set = asked.sets->at(asked.blow);
+    if (!set) return;
+    const Head& head = asked.blow.club.head;
+    const double loft = degrees(use_of(asked.blow).spin_loft.low);
+    auto& lofts = lofts_of_sets_[{head.mass, head.cg.x(), head.cg.y(), head.cg.z()}];
+    const auto [at, fresh] = lofts.try_emplace(set->name, Interval{loft, loft});
+    at->second = {std::min(at->second.low, loft), std::max(at->second.high, loft)};
   }
 
   /// A key that is sought, among overrides; `there`: with what holds meanwhile.
@@ -508,13 +595,15 @@ class StudyJob final : public PointJob {
     CaseFile file(*studied_, set);
     const auto job = read_job(file);
     {
-      Output out({.directory = scratch, .quiet = true, .durable = keep_outputs_}, file);
+      Output out({.directory = scratch, .quiet = true, .inner = true, .durable = keep_outputs_}, file);
       job->run(out);
     }
     json result = json::object();
     const json said = json::parse(post::read_file(scratch / "summary.json"));
     flatten(said, "", result);
     if (said.contains("skipped")) result["skipped"] = said["skipped"];
+    if (said.contains("doubts"))
+      add_doubts({{"a doubt of the case's own", 0, said["doubts"].front().get<std::string>()}}, result);
     if (!keep_outputs_) fs::remove_all(scratch);
     return result;
   }
@@ -581,6 +670,30 @@ class StudyJob final : public PointJob {
     return out;
   }
 
+  /// At the loft that gives the measured launch angle, with the ball's set of parameters that this loft chooses.
+  StudyAnswer matched(std::size_t d, std::size_t model, const models::NormalImpactPoint* bounce) const {
+    const auto read = latest_blow(d);
+    const std::string& name = read->models[model];
+    std::vector<std::string> set = overrides(d);
+    std::map<std::string, StudyAnswer> found;
+    const auto with = [&](const std::string& parameters) {
+      const StudyBlow asked = parameters.empty() ? *read : blow_with(with_set(set, parameters));
+      return found[parameters] = answer(name, asked, conditions_, launch_angle(d), bounce);
+    };
+    std::string chosen;
+    if (read->sets && read->sets->matter_to(name)) {
+      chosen = consistent_set(*read->sets, [&](const std::string& parameters) { return with(parameters).blow; });
+      set.push_back(fmt::format("ball.reduced=\"{}\"", chosen));
+    } else {
+      with("");
+    }
+    StudyAnswer a = std::move(found.at(chosen));
+    if (const std::string text = used_beyond(*blow_, set, a.blow, name); !text.empty())
+      a.doubts.push_back({fmt::format("{}: the loft that was found lies beyond what was seen", name),
+                          std::abs(a.blow.delivery.dynamic_loft), text});
+    return a;
+  }
+
   json compute_blow(std::size_t d, std::size_t model) const {
     json result = json::object();
     const auto read = solves_.empty() ? latest_blow(d)
@@ -591,7 +704,10 @@ class StudyJob final : public PointJob {
       std::call_once(first_bounce_, [&] { bounce_ = wall_bounce(blow(0), *conditions_.bounce_speed); });
       bounce = &bounce_;
     }
-    const StudyAnswer a = answer(asked.models[model], asked, conditions_, launch_angle(d), bounce);
+    const StudyAnswer a = conditions_.matched_launch
+                              ? matched(d, model, bounce)
+                              : answer(asked.models[model], asked, conditions_, launch_angle(d), bounce);
+    if (!budgets_) add_doubts(a.doubts, result);  // whose flights are told one by one
     const auto said = numbers(a);
     for (std::size_t o = 0; o < outputs_.size(); ++o)
       if (said[o]) result[outputs_[o].name] = *said[o];
@@ -641,7 +757,8 @@ class StudyJob final : public PointJob {
   mutable std::map<std::string, Swing> swings_;   ///< by what the design sets, place on the face apart
   mutable std::map<std::string, double> solved_;  ///< by the resolved case at the low end
   std::vector<std::string> left_out_;             ///< rows whose recorded swing is not there
-  std::size_t off_face_ = 0;                      ///< points struck off the face
+  std::map<std::array<double, 4>, std::map<std::string, Interval>> lofts_of_sets_;  ///< by head; spin lofts [deg]
+  std::size_t off_face_ = 0;                                                        ///< points struck off the face
   std::string first_off_face_;
   fs::path motion_;  ///< a swing that is not there and cannot be left out
   mutable std::once_flag first_bounce_;

@@ -154,6 +154,11 @@ class TuneJob final : public Job {
                   read({"max", "upper bound of the fit"}, range.max)};
       if (!(f.bounds.low < f.bounds.high)) t.fail("", "min must lie below max");
       f.start = read({"start", "first guess of the first search"}, std::clamp(standard, f.bounds.low, f.bounds.high));
+      if (!(f.start >= f.bounds.low && f.start <= f.bounds.high)) {
+        const double si = unit.empty() ? 1 : split_unit("start_" + unit).unit->si;
+        t.fail("start", fmt::format("{:g} lies outside the bounds of the fit ({:g} to {:g}{}{})", f.start / si,
+                                    f.bounds.low / si, f.bounds.high / si, unit.empty() ? "" : " ", unit));
+      }
       free_.push_back(f);
     }
     if (free_.empty()) root.fail("parameters", "name at least one [[parameters]]");
@@ -182,8 +187,9 @@ class TuneJob final : public Job {
       start[Eigen::Index(i)] = free_[i].start;
       bounds.push_back(free_[i].bounds);
     }
-    out.say(fmt::format("tuning {} parameters of {} on {} shots ({} kept for the test), {} starts", free_.size(),
-                        model_, train_.size(), test_.size(), search_.starts));
+    out.say(fmt::format("tuning {} of {} on {} ({} kept for the test), {}", post::counted(free_.size(), "parameter"),
+                        model_, post::counted(train_.size(), "shot"), test_.size(),
+                        post::counted(std::size_t(search_.starts), "start")));
     const solvers::LeastSquaresFit fit = solvers::least_squares(residuals, count, start, bounds, search_);
     const solvers::Identifiability known = solvers::identifiability(fit.jacobian, bounds);
     report(out, start, fit, known);

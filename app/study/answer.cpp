@@ -9,6 +9,7 @@
 
 #include "app/read_blow.hpp"
 #include "app/read_options.hpp"
+#include "app/solution_doubts.hpp"
 #include "golf/first_contact.hpp"
 #include "golf/quantities.hpp"
 #include "models/checked_launch.hpp"
@@ -248,6 +249,27 @@ Launch launch_with_history(const std::string& model, const models::Options& opti
   return models::volumetric_impact(blow, options.volumetric, fine, nullptr, add).launch;
 }
 
+/// A finite-element model that keeps what its last blow was solved to.
+class Remembering final : public models::ImpactModel {
+ public:
+  explicit Remembering(const models::Impact& fe) : fe_(fe) {}
+  Launch launch(const Blow& blow) const override {
+    last_ = fe_.run(blow);
+    return last_->launch;
+  }
+  const models::Impact* impact() const override { return &fe_; }
+  const models::FeOutcome& last() const { return *last_; }
+
+ private:
+  const models::Impact& fe_;
+  mutable std::optional<models::FeOutcome> last_;
+};
+
+void doubt_solution(StudyAnswer& a, const std::string& model, const models::FeOutcome& outcome) {
+  for (const SolutionDoubt& d : solution_doubts(a.blow, outcome))
+    a.doubts.push_back({fmt::format("{}: {} is above {:g}", model, d.what, d.limit), d.value, d.sentence()});
+}
+
 }  // namespace
 
 StudyBlow read_study_blow(Table root) {
@@ -260,6 +282,7 @@ StudyBlow read_study_blow(Table root) {
   }
   StudyBlow out{.models = read_models(root)};
   out.blow = read_blow(root, out.models);
+  out.sets = sets_by_loft(root);
   out.options = read_options(root, out.models, out.blow);
   out.swung = read_swung_club(root, out.models, out.options.shaft_mount);
   if (auto t = root.optional_table("launch")) out.launch = read_launch(*t, false);
@@ -343,17 +366,26 @@ StudyAnswer answer(const std::string& model, const StudyBlow& asked, const Study
   if (!made) {  // the stated launch is all there is
   } else if (conditions.matched_launch) {
     constexpr double tolerance = radians(0.03);
-    auto found = models::match_launch_angle(*made, out.blow, launch_angle.value(), tolerance);
+    const models::Impact* fe = made->impact();
+    const std::optional<Remembering> remembering = fe ? std::optional<Remembering>(*fe) : std::nullopt;
+    const models::ImpactModel& asks = remembering ? static_cast<const models::ImpactModel&>(*remembering) : *made;
+    auto found = models::match_launch_angle(asks, out.blow, launch_angle.value(), tolerance);
     out.blow = std::move(found.blow);
     out.launch = found.launch;
-  } else if (const models::Impact* fe = made->impact(); fe && (conditions.histories || conditions.followed)) {
+    if (remembering) doubt_solution(out, model, remembering->last());
+  } else if (const models::Impact* fe = made->impact()) {
     models::FaceStress stress;
-    out.launch = fe->run(out.blow, [&](const models::ImpactView& v) {
-                     if (v.shaft) out.hosel.add(*v.shaft, v.state);
-                     if (conditions.followed) stress.see(v);
-                   }).launch;
+    std::function<void(const models::ImpactView&)> watch;
+    if (conditions.histories || conditions.followed)
+      watch = [&](const models::ImpactView& v) {
+        if (v.shaft) out.hosel.add(*v.shaft, v.state);
+        if (conditions.followed) stress.see(v);
+      };
+    const models::FeOutcome outcome = fe->run(out.blow, watch);
+    out.launch = outcome.launch;
     if (stress.peak()) out.face_stress = stress.peak()->stress;
     models::check_launch(*made, out.blow, out.launch);
+    doubt_solution(out, model, outcome);
   } else if (conditions.histories && (model == "hertz-maw" || model == "volumetric")) {
     out.launch = launch_with_history(model, options, out.blow, out.history);
     models::check_launch(*made, out.blow, out.launch);
@@ -363,6 +395,9 @@ StudyAnswer answer(const std::string& model, const StudyBlow& asked, const Study
   if (asked.launch) out.launch = asked.launch->in_place_of(out.launch);
   if (asked.flight) try {
       out.flight = asked.flight->follow(out.launch, asked.blow.ball);
+      if (const std::string sentence = outside_law(*asked.flight, *out.flight); !sentence.empty())
+        out.doubts.push_back({fmt::format("a flight outside the range of {}", asked.flight->conditions.law.name),
+                              out.flight->flight.outside, sentence});
     } catch (const std::invalid_argument&) {
     }  // the ball does not reach the landing: the launch is an answer all the same
   return out;

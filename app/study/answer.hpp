@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "app/library.hpp"
 #include "app/read_flight.hpp"
 #include "app/read_swing.hpp"
 #include "app/reader.hpp"
@@ -29,6 +30,7 @@ struct StudyBlow {
   std::optional<models::ElasticSolid> plate;         ///< the wall, where it is not rigid
   std::optional<SwungClub> swung;                    ///< where a swing delivers the club
   std::shared_ptr<const models::SwingEnd> end = {};  ///< of that, once it was swung: `blow` begins there
+  std::optional<LoftSets> sets = {};                 ///< of the ball, where the loft chooses one of several
 };
 StudyBlow read_study_blow(Table root);
 
@@ -50,6 +52,13 @@ struct KeptBounce {
   double elastic = 1, viscous = 1;   ///< factors on the moduli
 };
 
+/// What a blow doubts of its own answer. Those of one kind are told together, with the worst of them.
+struct PointDoubt {
+  std::string kind;
+  double size;
+  std::string sentence;
+};
+
 struct StudyAnswer {
   Blow blow;
   std::optional<FaceCompliance> face;
@@ -61,6 +70,7 @@ struct StudyAnswer {
   models::HoselHistory hosel;                   ///< of a finite-element club
   std::shared_ptr<const models::SwingEnd> end;  ///< of the swing that delivered it
   std::optional<double> face_stress;  ///< largest von Mises stress of a face with a thickness, where it was kept [Pa]
+  std::vector<PointDoubt> doubts;
 };
 
 /// A quantity by its name and unit, as a study asks for it: "ball_speed_mph", "launch_ratio".

@@ -137,7 +137,8 @@ nlohmann::json compare(Output& out, const StudyTable& table, const StudyReferenc
     const std::string what = reference.variant ? (model.empty() ? "" : model + ": ") + "each variant"
                              : model.empty()   ? "computed"
                                                : model;
-    const std::string title = fmt::format("{} minus {}{}{}", what, reference.name, group.empty() ? "" : ", ", group);
+    const std::string title = fmt::format("{} minus {}{}", what, reference.name,
+                                          reference.by ? ", " + said_cell(columns[*reference.by], group) : "");
     out.tell(title);
     out.show(shown, title);
   }

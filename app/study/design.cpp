@@ -49,6 +49,10 @@ DesignFactor read_variants(Table root) {
     DesignLevel level;
     level.cells = {t.name({"name", "of the variant"}, taken)};
     level.set = t.texts({"set", "keys that the variant changes, table.key=value"}, std::vector<std::string>{});
+    for (std::size_t i = 0; i < level.set.size(); ++i)
+      for (std::size_t j = 0; j < i; ++j)
+        if (same_quantity(key_of(level.set[i]), key_of(level.set[j])))
+          t.fail("set", fmt::format("gives one quantity twice: '{}' and '{}'", level.set[j], level.set[i]));
     t.text({"range", "where its figures come from"}, "");
     if (auto m = t.optional_table("measured")) level.measured = read_measured(*m);
     out.levels.push_back(std::move(level));
@@ -308,6 +312,7 @@ Design read_design(Table root) {
   };
   std::vector<DesignFactor> axes;
   std::vector<std::pair<std::string, Table>> swept;
+  std::vector<std::pair<Table, std::string>> twice;  // values: told once the design is no larger than it may be
   for (Table t : root.tables("axis")) {
     std::vector<std::string> keys;
     if (t.has("keys")) keys = t.texts({"keys", "of the case, all set to the axis' value"});
@@ -331,8 +336,11 @@ Design read_design(Table root) {
       continue;
     }
     if (!t.has("range")) {
-      for (const std::string& x : t.scalars({"values", "of the key, each crossed with all other axes"}))
+      std::set<std::string> once;
+      for (const std::string& x : t.scalars({"values", "of the key, each crossed with all other axes"})) {
+        if (!once.insert(x).second) twice.emplace_back(t, x);
         axis.levels.push_back(level(x));
+      }
       axes.push_back(std::move(axis));
       continue;
     }
@@ -358,6 +366,7 @@ Design read_design(Table root) {
   if (sample && sampled.columns.empty()) sample->fail("", "no [[axis]] has a range, or a mean and sd, to draw from");
   if (sample) out.add(std::move(sampled), root, "sample");
   for (std::size_t a = 0; a < axes.size(); ++a) out.add(std::move(axes[a]), root, "axis");
+  if (!twice.empty()) twice.front().first.fail("values", fmt::format("{} is there twice", twice.front().second));
   if (out.factors().empty())
     root.fail("axis", "a study varies something: name an [[axis]], a [[variant]], [rows], [grid] or [sample]");
   return out;

@@ -95,4 +95,13 @@ void check_formula(const Table& table, std::string_view key, const std::string& 
   }
 }
 
+void check_condition(const Table& table, std::string_view key, const std::string& text,
+                     const std::vector<std::string>& names) {
+  check_formula(table, key, text, names);
+  for (const char* compares : {"<", ">", "==", "!=", "&&", "||"})
+    if (text.find(compares) != text.npos) return;
+  table.fail(
+      key, fmt::format("'{}' is a number, and neither true nor false: compare it, with <, <=, ==, !=, >= or >", text));
+}
+
 }  // namespace hosel::app

@@ -41,5 +41,8 @@ class Formula {
 /// Throws InputError at `key` of `table`, with the names that are known, where `text` is no formula of them.
 void check_formula(const Table& table, std::string_view key, const std::string& text,
                    const std::vector<std::string>& names);
+/// The same for a formula that is true or false: a number alone is refused.
+void check_condition(const Table& table, std::string_view key, const std::string& text,
+                     const std::vector<std::string>& names);
 
 }  // namespace hosel::app

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <random>
 
+#include "post/digits.hpp"
 #include "post/labels.hpp"
 #include "post/scatter.hpp"
 
@@ -78,10 +79,10 @@ nlohmann::json report_landing(Output& out, const StudyTable& table, const StudyE
     std::string said = fmt::format(
         "{}{:.0f} % of {} balls (95 % interval {:.0f} to {:.0f} %) land in the fairway, {:.4g} {} wide. Carry is "
         "{:.0f} "
-        "{} with a standard deviation of {:.1f} {}, side {:+.1f} {} with {:.1f} {}. The ellipse for 95 % is {:.0f} {} "
+        "{} with a standard deviation of {:.1f} {}, side {} {} with {:.1f} {}. The ellipse for 95 % is {:.0f} {} "
         "long and {:.0f} {} wide.",
-        whose, 100 * hit / n, balls_struck, 100 * low, 100 * high, fairway, m, carried, m, sd.y(), m, all.mean.x(), m,
-        sd.x(), m, extent.x(), m, extent.y(), m);
+        whose, 100 * hit / n, balls_struck, 100 * low, 100 * high, fairway, m, carried, m, sd.y(), m,
+        post::fixed(all.mean.x(), 1, true), m, sd.x(), m, extent.x(), m, extent.y(), m);
     auto& entry = json[name.empty() ? "case" : name];
     entry = {{"balls", balls_struck},
              {"landed", all.at.size()},

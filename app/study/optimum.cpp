@@ -97,7 +97,7 @@ std::optional<StudyOptimum> read_optimum(Table root, const StudyTable& table) {
   out.output = std::size_t(at - table.outputs.begin());
   out.largest = t->choice({"seek", "of the output"}, {"largest", "least"}) == "largest";
   out.where = t->text({"where", "a formula of outputs and axes that is true at what is allowed"}, "");
-  if (!out.where.empty()) check_formula(*t, "where", out.where, names_of(table));
+  if (!out.where.empty()) check_condition(*t, "where", out.where, names_of(table));
   return out;
 }
 

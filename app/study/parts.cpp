@@ -146,7 +146,7 @@ class PartsReport {
       }
       for (std::size_t i = 0; i < mean.y.size(); ++i) mean.y[i] /= double(known[i]);  // NaN of nothing
       const std::size_t least = std::ranges::min(known);
-      add(o, mean, least == places_.size() ? "mean" : fmt::format("mean of {} places", least), said["mean"]);
+      add(o, mean, least == places_.size() ? "mean" : "mean of " + post::counted(least, "place"), said["mean"]);
       if (differs) continue;
       shown.rows.resize(rows);
       equal.push_back(post::spoken_key(table_.outputs[o]).words);
@@ -223,6 +223,7 @@ StudyParts read_parts(Table root, const StudyTable& table) {
     out.all.push_back({t.name({"name", "of the part"}, taken), variant({"of", "the variant"}),
                        variant({"minus", "the variant that is taken from it"}),
                        t.number({"per", "by which the difference is divided"}, Range::positive(), 1.0)});
+    if (out.all.back().of == out.all.back().minus) t.fail("minus", "is the variant of `of`: their difference is zero");
   }
   if (!root.has("parts_over")) return out;
   const auto columns = table.design.columns();

@@ -2,7 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <boost/math/tools/toms748_solve.hpp>
+#include <cmath>
+#include <map>
 
 #include "app/study/compare.hpp"
 #include "solvers/errors.hpp"
@@ -35,22 +38,30 @@ std::vector<StudySolve> read_solves(Table root, const std::vector<std::string>& 
 }
 
 double solve(const StudySolve& wanted, const std::function<std::optional<double>(double)>& answer) {
+  std::map<double, double> known;
   const auto excess = [&](double x) {
     const auto y = answer(x);
     if (!y)
       throw solvers::NonConvergence(
           fmt::format("{}: no {} at {} = {:g}", wanted.name, wanted.output.name, wanted.key, x));
-    return *y - wanted.value;
+    return known[x] = *y - wanted.value;
   };
   const double low = excess(wanted.low), high = excess(wanted.high);
   if (low * high > 0)
     throw solvers::NonConvergence(fmt::format("{}: no {} from {:g} to {:g} makes {} {:g}: it is {:.5g} and {:.5g}",
                                               wanted.name, wanted.key, wanted.low, wanted.high, wanted.output.name,
                                               wanted.value, low + wanted.value, high + wanted.value));
-  // A bounce more or less makes a total distance jump: the key is found as well as it can be.
   std::uintmax_t most = 200;
   const auto [a, b] = boost::math::tools::toms748_solve(excess, wanted.low, wanted.high, low, high,
                                                         boost::math::tools::eps_tolerance<double>(30), most);
+  // A bounce more or less makes a total distance jump a little: the key is found as well as it can be. A jump by more
+  // passes over the value.
+  constexpr double most_of_scale = 1e-3;
+  const double scale = std::max(std::abs(wanted.value), std::abs(high - low)), at_a = known.at(a), at_b = known.at(b);
+  if (std::min(std::abs(at_a), std::abs(at_b)) > most_of_scale * scale)
+    throw solvers::NonConvergence(fmt::format("{}: no {} makes {} {:g}: at {:g} it jumps from {:.5g} to {:.5g}",
+                                              wanted.name, wanted.key, wanted.output.name, wanted.value, (a + b) / 2,
+                                              at_a + wanted.value, at_b + wanted.value));
   return (a + b) / 2;
 }
 

@@ -26,7 +26,7 @@ struct StudySolve {
 std::vector<StudySolve> read_solves(Table root, const std::vector<std::string>& variants, bool flies);
 
 /// The key's value at which the output is what is wanted. `answer`: the output [its unit], nothing where the model has
-/// none. Throws solvers::NonConvergence where the ends of the range do not enclose it.
+/// none. Throws solvers::NonConvergence where the ends of the range do not enclose it, or the output jumps over it.
 double solve(const StudySolve& wanted, const std::function<std::optional<double>(double)>& answer);
 
 }  // namespace hosel::app

@@ -41,7 +41,7 @@ std::vector<StudyStatement> read_study_statements(Table root, const std::vector<
                      .variables = names};
     for (const auto& [key, formula] : {std::pair{"holds", &s.holds}, {"where", &s.where}}) {
       if (formula->empty() && key == std::string_view("where")) continue;
-      check_formula(t, key, *formula, names);
+      check_condition(t, key, *formula, names);
     }
     out.push_back(std::move(s));
   }

@@ -61,7 +61,8 @@ void StudyTable::fill(const std::vector<json>& points) {
     json all = json::object();
     for (const json& p : points)
       if (!p.contains("error")) all.update(p);
-    for (const auto& [name, value] : all.items()) outputs.push_back(name);
+    for (const auto& [name, value] : all.items())
+      if (name != "doubts") outputs.push_back(name);
   } else if (asked.empty()) {
     for (std::size_t i = 0; i < points.size(); ++i)
       for (const std::string& o : outputs)

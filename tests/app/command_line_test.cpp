@@ -81,6 +81,17 @@ TEST(CommandLine, DiffNamesInputsAndLaunches) {
   EXPECT_FALSE(std::regex_search(stated.text, std::regex("e\\+0[0-9] +(beyond|within)"))) << stated.text;
   EXPECT_NE(same.text.find("inputs\n  the same\nlaunches\n  the same"), std::string::npos) << same.text;
   EXPECT_EQ(same.text.find("beyond"), std::string::npos) << same.text;
+  // A value in another unit is the same value.
+  std::string text = kEccentricBlow;
+  text.replace(text.find("mass_kg = 0.2"), 13, "mass_g = 200")
+      .replace(text.find("cg_mm = [-35.0"), 14, "cg_m = [-0.035");
+  write(blow / "case.toml", text);
+  run("grams", "");
+  run("heavier", "--set head.mass_g=201");
+  EXPECT_NE(diff("a", "grams").text.find("inputs\n  the same\n"), std::string::npos) << diff("a", "grams").text;
+  const Outcome heavier = diff("a", "heavier");
+  EXPECT_NE(heavier.text.find("head.mass_g"), std::string::npos) << heavier.text;
+  EXPECT_NE(heavier.text.find("head.mass_kg"), std::string::npos) << heavier.text;
   const Outcome none = diff("a", "nothing");
   expect_refused(none, "no finished run");
 }
@@ -228,6 +239,15 @@ TEST(CommandLine, AStrikeOffTheFaceWarns) {
   EXPECT_EQ(strict.status, 3);
   EXPECT_NE(strict.text.find("--strict: the ball is struck off the face"), std::string::npos) << strict.text;
   EXPECT_EQ(strict.text.find("no convergence"), std::string::npos) << strict.text;
+}
+
+TEST(CommandLine, AClubWithoutAShaftIsRefusedWithFileAndLine) {
+  const fs::path blow = fresh_directory("no_shaft");
+  for (const char* model : {"fe-full-club", "shaft-coupled"}) {
+    write(blow / "case.toml", std::string(kEccentricBlow).replace(kEccentricBlow.find("rigid-eccentric"), 15, model));
+    const Outcome o = command("check '" + blow.string() + "'");
+    expect_refused(o, std::string("case.toml:2: models: ") + model + " needs the club's shaft: [shaft]");
+  }
 }
 
 TEST(CommandLine, ACharacteristicTimePassesOrFails) {

@@ -193,6 +193,14 @@ TEST(Import, SaysWhatItCannotRead) {
   refuse(head + "7i,115,82,16,6400,22\n", "--units imperial --column 'Spin Rate=spin_mph'", "no such quantity");
   refuse("Club,Ball Speed (mph),Club Speed (mph),Launch Angle (deg),Spin Rate (turns/min)\n7i,115,82,16,6400\n", "",
          "the unit 'turns/min' is not known");
+  const std::string speeds = "Club,Ball Speed (mph),Club Speed (mph),Launch Angle,Spin Rate,Dynamic Loft";
+  for (const char* unit : {"(furlongs)", "[foo]", "(parsec)"})
+    refuse(speeds + ",Impact Toe " + unit + "\n7i,115,82,16,6400,22,1\n", "",
+           "column 'Impact Toe " + std::string(unit) + "': the unit '" +
+               std::string(unit).substr(1, std::string(unit).size() - 2) + "' is not known; --column 'Impact Toe " +
+               unit + "=impact_toe_mm' states one");
+  refuse("Club,Ball Speed (mph),Club Speed (mph),Launch Angle,Spin Rate (furlongs)\n7i,115,82,16,6400\n", "",
+         "the unit 'furlongs' is not known");
   refuse("Club,Ball Speed (mph),Club Speed (mph),Launch Angle (mm),Spin Rate (rpm)\n7i,115,82,16,6400\n", "",
          "mm is no unit of launch_angle");
   refuse("Club,Ball Speed (mph),Club Speed (mph),Launch Angle,Spin Rate,Impact Lateral (mm)\n7i,115,82,16,6400,3 R\n",
@@ -211,6 +219,34 @@ TEST(Import, SaysWhatItCannotRead) {
   };
   refuse_file(dir / "nowhere.csv", "no such file");
   refuse_file(dir, "a directory: the exported file itself is wanted");
+}
+
+TEST(Import, WordsInBracketsThatAreNoUnitAreRead) {
+  const fs::path dir = test::fresh_directory("import_brackets");
+  const auto o = import_text(dir,
+                             "Club,Ball Speed (avg) (mph),Club Speed (mph),Launch Angle (vertical),Spin Rate [calc],"
+                             "Dynamic Loft (measured),Side Angle [L/R]\n7i,115,82,16,6400,22,2 R\n");
+  ASSERT_EQ(o.status, 0) << o.text;
+  EXPECT_NEAR(imported_shots(dir).find("spin_rate_rpm")->value.front(), 6400 * kRadPerSecPerRpm, 1e-9);
+}
+
+/// What --column says comes before a header that is known by itself, wherever the two stand.
+TEST(Import, ByHandComesFirst) {
+  const fs::path dir = test::fresh_directory("import_by_hand_first");
+  const auto text = [](const char* mine) {
+    return std::string(
+               "Club,Ball Speed,Club Speed,Launch Angle,Spin Rate,Dynamic Loft,My Spin\n7i,115,82,16,6400,22,") +
+           mine + "\n7i,116,82,16,6500,22,6700\n";
+  };
+  const auto o = import_text(dir, text("6600"), "--units imperial --column 'My Spin=spin_rate_rpm'");
+  ASSERT_EQ(o.status, 0) << o.text;
+  const loop::Shots shots = imported_shots(dir);
+  EXPECT_NEAR(shots.find("spin_rate_rpm")->value[0], 6600 * kRadPerSecPerRpm, 1e-9);
+  EXPECT_NEAR(shots.find("spin_rate_rpm")->value[1], 6700 * kRadPerSecPerRpm, 1e-9);
+  EXPECT_NE(o.text.find("a second column of spin rate"), std::string::npos) << o.text;
+  fs::remove_all(dir / "case");
+  test::expect_refused(import_text(dir, text("much"), "--units imperial --column 'My Spin=spin_rate_rpm'"),
+                       "column 'My Spin', shot 1: 'much' is not a number");
 }
 
 /// What is said by hand of a column that is not there, or cannot be so, is no silent nothing.

@@ -123,6 +123,23 @@ TEST(PlateCase, TheFaceIsJudgedByTheRulesAndByItsYieldStrength) {
   EXPECT_EQ(thick.find("yield strength"), std::string::npos) << thick;
 }
 
+TEST(PlateCase, ABallBesideTheFaceIsDoubted) {
+  const fs::path dir = fresh_directory("plate_beside");
+  write(dir / "case.toml", kFace);
+  const auto run = [&](const std::string& toe) {
+    return command("run '" + dir.string() + "' --force --out '" + (dir / "out").string() +
+                   "' --set places.toe_mm=" + toe + " --set places.high_mm=[0] --set numerical_error=false" + kCoarse);
+  };
+  const Outcome beside = run("[0,60]");
+  EXPECT_NE(beside.text.find("warning: the ball is struck off the face, which reaches "), std::string::npos)
+      << beside.text;
+  EXPECT_NE(beside.text.find("at 1 of 2 places. The farthest: 60 mm towards the toe and 0 mm up"), std::string::npos)
+      << beside.text;
+  const Outcome on = run("[0]");
+  EXPECT_EQ(on.text.find("off the face"), std::string::npos) << on.text;
+  EXPECT_NE(on.text.find("ball speed over 1 place: "), std::string::npos) << on.text;
+}
+
 /// The first touch throws a light face away from the ball, and both are apart while the head follows. The blow is not
 /// over: the ball leaves faster than the head.
 TEST(PlateCase, ABallThatTheFaceFleesFromIsStruckAllTheSame) {

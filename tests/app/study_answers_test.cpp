@@ -56,6 +56,42 @@ TEST(StudyAnswers, AFormulaIsOneConditionThatAssignsNothing) {
   refused(statement("ball_speed_mps > 65,5"), "decimals have a point");
 }
 
+TEST(StudyAnswers, WhatIsGivenTwiceIsRefused) {
+  const std::string twice = "[[variant]]\nname = \"v\"\nset = [\"head.mass_g=190\", \"head.mass_kg=0.2\"]\n";
+  refused(study("", twice), "variant[1].set: gives one quantity twice: 'head.mass_g=190' and 'head.mass_kg=0.2'");
+  refused(study("", "[[axis]]\nkey = \"head.mass_kg\"\nvalues = [0.2, 0.19, 0.2]\n"),
+          "axis[1].values: 0.2 is there twice");
+  refused(study("", "[[variant]]\nname = \"v\"\nset = []\n[[part]]\nname = \"p\"\nof = \"v\"\nminus = \"v\"\n"),
+          "part[1].minus: is the variant of `of`");
+}
+
+TEST(StudyAnswers, TitlesAndSentencesHaveTheirUnits) {
+  const fs::path dir = fresh_directory("study_titles");
+  const Outcome o = run(
+      dir, std::string(study("")).replace(study("").find("[\"ball_speed_mps\"]"), 18,
+                                          "[\"ball_speed_mps\", \"normal_impulse_N_s\"]") +
+               "[[variant]]\nname = \"a\"\nset = []\n[[variant]]\nname = \"b\"\nset = []\n[[part]]\nname = \"p\"\n"
+               "of = \"a\"\nminus = \"b\"\n[compare]\nwith = \"variant\"\nvariant = \"a\"\nby = \"head.mass_kg\"\n");
+  ASSERT_EQ(o.status, 0) << o.text;
+  EXPECT_NE(o.text.find("p: no difference in ball speed, normal impulse\n"), std::string::npos) << o.text;
+  EXPECT_NE(o.text.find("each variant minus a, mass 0.19 kg"), std::string::npos) << o.text;
+}
+
+/// Status 2 at once, and not when every point was computed.
+TEST(StudyAnswers, AMisspeltOutputOfACaseIsToldAtTheFirstPoint) {
+  const fs::path dir = fresh_directory("study_misspelt");
+  write(dir / "blow/case.toml", "kind = \"impact\"\nmodels = [\"rigid-eccentric\"]\n" + kBlow);
+  write(dir / "study/case.toml",
+        "kind = \"study\"\ncase = \"../blow\"\noutputs = [\"models.rigid-eccentric.ball_sped_mps\"]\n[[axis]]\nkey = "
+        "\"delivery.impact_toe_mm\"\nrange = [-20, 20]\ncount = 200\n");
+  const Outcome o = command("run '" + (dir / "study").string() + "' --quiet --out '" + (dir / "out").string() + "'");
+  expect_refused(o,
+                 "has no number 'models.rigid-eccentric.ball_sped_mps' in its summary; did you mean "
+                 "'models.rigid-eccentric.ball_speed_mps'?");
+  const std::string points = content(dir / "out/shards/1-of-1/points.jsonl");
+  EXPECT_LT(std::ranges::count(points, '\n'), 50);
+}
+
 TEST(StudyAnswers, WhatIsNoQuantityOfItsOwnIsRefused) {
   refused(study("matched_launch = true\n", kMasses + "[measured]\nlaunch_angle_deg = [10, 14]\n"), "a range");
   refused(study("matched_launch = true\n", kMasses + "[measured]\nlaunch_angle_mps = 0.2\n"), "is no angle");

@@ -911,7 +911,8 @@ TEST(Study, AFormerKindSaysWhatItIsNow) {
 
 TEST(Study, AStatementThatCannotBeReadIsRefused) {
   const fs::path dir = fresh_directory("study_statement");
-  for (const char* formula : {"ball_sped_mps > 1", "ball_speed_mps >", "difference.ball_speed_mps > 1"}) {
+  for (const char* formula : {"ball_sped_mps > 1", "ball_speed_mps >", "difference.ball_speed_mps > 1",
+                              "ball_speed_mps", "0", "2 * ball_speed_mps - 80"}) {
     write(dir / "case.toml",
           std::string("kind = \"study\"\nmodels = [\"stick-slip\"]\noutputs = [\"ball_speed_mps\"]\n"
                       "[[axis]]\nkey = \"delivery.club_speed_mps\"\nvalues = [40.0]\n[[statement]]\ntext = \"it is\"\n"
@@ -939,7 +940,7 @@ holds = "ball_speed_mps == largest.ball_speed_mps"
 [[statement]]
 text = "among all"
 where = "club_speed_mps < 45 && ball_speed_mps == largest.ball_speed_mps"
-holds = "1"
+holds = "club_speed_mps < 45"
 )") + kCentredBlow);
   const std::string out = (dir / "out").string();
   ASSERT_EQ(command("run " + dir.string() + " --out " + out + " --quiet").status, 0);

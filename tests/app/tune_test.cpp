@@ -413,6 +413,22 @@ TEST(Tune, NoiseHasAUnitOfItsChannel) {
   EXPECT_NE(refused(d).find("ball_speed_kg"), std::string::npos) << refused(d);
 }
 
+TEST(Tune, AnEndOfAParameterIsItselfInAnyUnit) {
+  const std::string mass = "[[parameters]]\nname = \"head_mass\"\n";
+  CaseFile file(chosen_shots("tune_grams", mass + "min_g = 150\nmax_g = 350\n"));
+  EXPECT_NO_THROW(read_job(file));
+  EXPECT_NE(refused(chosen_shots("tune_grams", mass + "max_g = 350.001\n")).find("350.001 is out of range"),
+            std::string::npos);
+}
+
+TEST(Tune, AStartOutsideItsBoundsIsRefused) {
+  const std::string said = refused(
+      chosen_shots("tune_start", "[[parameters]]\nname = \"head_mass\"\nmin_g = 180\nmax_g = 220\nstart_g = 230\n"));
+  EXPECT_NE(said.find("parameters[2].start_g: 0.23 lies outside the bounds of the fit (0.18 to 0.22 kg)"),
+            std::string::npos)
+      << said;
+}
+
 TEST(Tune, AllRowsMayBeFitted) {
   const auto s = run(chosen_shots("tune_all", "[split]\ntrain_fraction = 1\n"));
   ASSERT_EQ(s["rows"]["train"], 12);

@@ -25,6 +25,14 @@ TEST(Labels, UnitsAreRaisedOnce) {
   EXPECT_EQ(label("ball_speed_mps.4"), "ball speed 4 [m/s]");  // of a list in a summary
   EXPECT_EQ(symbol("kg m^2"), "kg m²");
   EXPECT_EQ(symbol("N_s_per_m"), "N s/m");
+  EXPECT_EQ(label("normal_impulse_N_s"), "normal impulse [N s]");
+  EXPECT_EQ(hosel::post::spoken_key("normal_impulse_N_s").words, "normal impulse");
+  EXPECT_EQ(hosel::post::spoken_key("hosel_moment_impulse_x_N_m_s").unit, "N m s");
+}
+
+TEST(Labels, OneIsNoPlural) {
+  EXPECT_EQ(hosel::post::counted(1, "shot"), "1 shot");
+  EXPECT_EQ(hosel::post::counted(0, "place"), "0 places");
 }
 
 TEST(Channels, AnglesAreComparedOnTheCircle) {

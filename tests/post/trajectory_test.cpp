@@ -18,7 +18,9 @@ TEST(Trajectory, FromAboveLeftOfTheTargetIsUp) {
   ASSERT_EQ(figure.panels.size(), 2u);
   const Panel& above = figure.panels[1];
   EXPECT_EQ(above.y_label, "right  <-  [m]  ->  left");
-  EXPECT_NEAR(above.series.front().y.back(), flight.path.back().position.y(), 1e-9);
+  EXPECT_TRUE(above.y_down);
+  EXPECT_NEAR(above.series.front().y.back(), -flight.path.back().position.y(), 1e-9);  // right is positive
+  EXPECT_NEAR(above.series.front().y.back(), flight.side, 1e-9);                       // as tables have it
   EXPECT_NEAR(above.series.front().x.back(), flight.path.back().position.x(), 1e-9);
 }
 
