@@ -276,11 +276,12 @@ void Beam::residual(const State& s, Vector& inertia, Vector& force) const {
   for (std::size_t i = 0; i < nodes_.size(); ++i) {
     const Index t = nodes_[i].translation.v, r = nodes_[i].rotation.v;
     const Vec3 w = s.v.segment<3>(r), turn = s.a.segment<3>(r);
+    inertia.segment<3>(r) += rotary_[i] * turn + w.cross(rotary_[i] * w);
+    force.segment<3>(t) -= weight_[i] * options_.gravity;
+    if (moment_[i].isZero(0)) continue;
     const Mat3 R = attitude(s, i);
     inertia.segment<3>(t) += R * (turn.cross(moment_[i]) + w.cross(w.cross(moment_[i])));
-    inertia.segment<3>(r) += rotary_[i] * turn + w.cross(rotary_[i] * w) +
-                             moment_[i].cross(R.transpose() * s.a.segment<3>(t));
-    force.segment<3>(t) -= weight_[i] * options_.gravity;
+    inertia.segment<3>(r) += moment_[i].cross(R.transpose() * s.a.segment<3>(t));
     force.segment<3>(r) -= moment_[i].cross(R.transpose() * options_.gravity);
   }
 }
@@ -388,8 +389,9 @@ Energies Beam::energies(const State& s) const {
   }
   for (std::size_t i = 0; i < nodes_.size(); ++i) {
     const Vec3 w = s.v.segment<3>(nodes_[i].rotation.v);
-    out.kinetic += 0.5 * w.dot(rotary_[i] * w) +
-                   s.v.segment<3>(nodes_[i].translation.v).dot(attitude(s, i) * w.cross(moment_[i]));
+    out.kinetic += 0.5 * w.dot(rotary_[i] * w);
+    if (!moment_[i].isZero(0))
+      out.kinetic += s.v.segment<3>(nodes_[i].translation.v).dot(attitude(s, i) * w.cross(moment_[i]));
   }
   out.viscous = viscous_;
   out.external = fall_;
@@ -398,8 +400,10 @@ Energies Beam::energies(const State& s) const {
 
 void Beam::commit(const State& s) {
   double height = 0, power = 0;
-  for (std::size_t i = 0; i < nodes_.size(); ++i)
-    height += options_.gravity.dot(weight_[i] * s.q.segment<3>(nodes_[i].translation.q) + attitude(s, i) * moment_[i]);
+  for (std::size_t i = 0; i < nodes_.size(); ++i) {
+    height += weight_[i] * options_.gravity.dot(s.q.segment<3>(nodes_[i].translation.q));
+    if (!moment_[i].isZero(0)) height += options_.gravity.dot(attitude(s, i) * moment_[i]);
+  }
   if (options_.damping_time > 0)
     for (const Element& e : elements_) {
       const Kinematics k = kinematics(s, e);

@@ -5,6 +5,9 @@
 #include <cmath>
 #include <stdexcept>
 #include <utility>
+#include <vector>
+
+#include "mesh/gauss.hpp"
 
 namespace hosel::fem {
 namespace {
@@ -13,8 +16,7 @@ using Eigen::Vector2d;
 using mesh::Q9;
 
 const double kThird = 1 / std::sqrt(3.0), kFifths = std::sqrt(0.6);
-const std::array<std::pair<double, double>, 3> kGauss3{
-    {{-std::sqrt(0.6), 5.0 / 9}, {0, 8.0 / 9}, {std::sqrt(0.6), 5.0 / 9}}};
+const std::vector<std::pair<double, double>> kGauss3 = mesh::gauss(3);
 constexpr double kShearFactor = 5.0 / 6;
 
 Eigen::Matrix3d plane_stress(const PlateMaterial& m) {

@@ -47,17 +47,27 @@ void set_rotation(State& s, const DofMap::Block& block, const Eigen::Quaterniond
 }
 
 Eigen::Quaterniond rotation_exp(const Vec3& w) {
-  const double angle2 = w.squaredNorm(), angle = std::sqrt(angle2);
-  const double half_sinc = angle < 1e-4 ? 0.5 - angle2 / 48 : std::sin(angle / 2) / angle;
-  const double c = angle < 1e-4 ? 1 - angle2 / 8 + angle2 * angle2 / 384 : std::cos(angle / 2);
+  const double z = w.squaredNorm() / 4;
+  double half_sinc, c;
+  if (z < 2.5e-3) {  // a time step's turn: series of sine and cosine
+    half_sinc = 0.5 - z * (1.0 / 12 - z * (1.0 / 240 - z * (1.0 / 10080 - z / 725760)));
+    c = 1 - z * (1.0 / 2 - z * (1.0 / 24 - z * (1.0 / 720 - z * (1.0 / 40320 - z / 3628800))));
+  } else {
+    const double half = std::sqrt(z);
+    half_sinc = 0.5 * std::sin(half) / half;
+    c = std::cos(half);
+  }
   return {c, half_sinc * w.x(), half_sinc * w.y(), half_sinc * w.z()};
 }
 
 Vec3 rotation_log(const Eigen::Quaterniond& r) {
   const double sign = r.w() < 0 ? -1 : 1;
   const Vec3 u = sign * r.vec();
-  const double s = u.norm(), c = sign * r.w();
-  return (s < 1e-8 ? 2 / c : 2 * std::atan2(s, c) / s) * u;
+  const double z = u.squaredNorm(), c = sign * r.w();
+  if (z < 1e-3)  // neighbours in a mesh: 2 arcsin(s) / s by its series
+    return (2 + z * (1.0 / 3 + z * (3.0 / 20 + z * (5.0 / 56 + z * (35.0 / 576 + z * 63.0 / 1408))))) * u;
+  const double s = std::sqrt(z);
+  return 2 * std::atan2(s, c) / s * u;
 }
 
 Mat3 rotation_tangent(const Vec3& w) {

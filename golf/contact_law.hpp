@@ -36,8 +36,8 @@ struct ContactLaw {
   double tangential_restitution = 0;  ///< e_t [-]
   /// Coulomb limit of the impulse; inf sticks.
   double friction = std::numeric_limits<double>::infinity();
-  /// The normal impulse passes this far above the ball's centre (towards the slip direction of the
-  /// face's pull), as a fraction of the ball radius; positive adds spin.
+  /// The normal impulse passes this far below the ball's centre (down the face, along its slip), as a fraction of the
+  /// ball's radius; positive adds spin.
   double normal_force_offset = 0;  ///< [-]
   /// Of a finite-element ball, which knows none of the above.
   PatchFriction patch = {};

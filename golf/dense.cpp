@@ -7,6 +7,7 @@
 #include <Eigen/LU>
 #include <Eigen/QR>
 #include <Eigen/SVD>
+#include <limits>
 #define HOSEL_DENSE template
 #include "dense_templates.hpp"
 
@@ -64,6 +65,11 @@ Eigenpairs eigenpairs(const MatrixXd& A) {
 }
 
 Eigenpairs eigenpairs(const MatrixXd& A, const MatrixXd& B) {
+  // Eigen's solver goes on with whatever the factors of B are.
+  if (!Cholesky(B).positive()) {
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    return {VectorXd::Constant(A.rows(), nan), MatrixXd::Constant(A.rows(), A.cols(), nan), false};
+  }
   const Eigen::GeneralizedSelfAdjointEigenSolver<MatrixXd> of(A, B);
   return {of.eigenvalues(), of.eigenvectors(), of.info() == Eigen::Success};
 }

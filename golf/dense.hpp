@@ -72,12 +72,12 @@ MatrixXd minimum_norm(const MatrixXd& A, const MatrixXd& b);
 struct Eigenpairs {
   VectorXd values;
   MatrixXd vectors;
-  bool converged = false;  ///< whether the iteration came to its end
+  bool converged = false;  ///< where not, no other answer means anything
 };
 
 /// A v = lambda v, v' v = 1, for a symmetric A, whose lower half is read.
 Eigenpairs eigenpairs(const MatrixXd& A);
-/// A v = lambda B v, v' B v = 1, for a symmetric A and a positive definite B, whose lower halves are read.
+/// A v = lambda B v, v' B v = 1, for a symmetric A and a positive definite B (else NaN), whose lower halves are read.
 Eigenpairs eigenpairs(const MatrixXd& A, const MatrixXd& B);
 
 /// V' A V.

@@ -6,6 +6,7 @@ namespace hosel {
 namespace {
 
 using enum Dimension;
+constexpr double kKgPerPound = 0.45359237;
 constexpr std::array kUnits = {
     Unit{"m", length, 1.0},
     Unit{"mm", length, 1e-3},
@@ -53,11 +54,19 @@ constexpr std::array kUnits = {
     Unit{"m2", area, 1.0},
     Unit{"mm2", area, 1e-6},
     Unit{"pct", percent, 0.01},
+    // Not in units().
+    Unit{"in", length, 0.0254},
+    Unit{"ft", length, 0.3048},
+    Unit{"oz", mass, kKgPerPound / 16},
+    Unit{"lb", mass, kKgPerPound},
+    Unit{"lbf", force, kKgPerPound* kGravity},
 };
+constexpr std::size_t kWrittenAlone = 5;
 
 }  // namespace
 
-std::span<const Unit> units() { return kUnits; }
+std::span<const Unit> all_units() { return kUnits; }
+std::span<const Unit> units() { return all_units().first(kUnits.size() - kWrittenAlone); }
 
 std::string_view name(Dimension dimension) {
   switch (dimension) {

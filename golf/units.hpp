@@ -57,6 +57,8 @@ struct Unit {
 };
 
 /// Every unit the project reads, in the order offered to a person.
+std::span<const Unit> all_units();
+/// Those of them in which instruments record: the loop asks whether a column was recorded in another one.
 std::span<const Unit> units();
 std::string_view name(Dimension dimension);
 

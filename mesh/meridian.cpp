@@ -95,6 +95,8 @@ std::vector<std::string> MeridianOptions::faults() const {
   if (far && !(*far >= 1 && std::isfinite(*far))) out.push_back("mesh: far must be at least 1 and finite");
   if (both_poles && !far) out.push_back("mesh: both_poles needs far, the size at the equator");
   if (far && pole == 1 && *far != 1) out.push_back("mesh: far is 1 where pole is");
+  // The growth's exponent, (far - 1) / (1 - pole), is below 1 there: elements next to the pole are no finer for it.
+  if (far && pole > 0 && pole < 1 && *far < 2 - pole) out.push_back("mesh: far must be at least 2 - pole");
   if (!(skin > 0 && skin <= 1)) out.push_back("mesh: skin must lie in (0, 1]");
   if (!(core > 0.05 && core < 0.8)) out.push_back("mesh: core must lie in (0.05, 0.8)");
   return out;

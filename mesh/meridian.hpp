@@ -15,7 +15,7 @@ struct MeridianOptions {
   int sector = 4;     ///< elements per 45 degrees of the surface before grading (4 * sector in all)
   int rings = 4;      ///< rings of elements outside the core block
   double pole = 0.5;  ///< surface element size at the contact pole relative to the ungraded one, in (0, 1]
-  /// The same at the other pole, at least 1. Where set, sizes grow as a power of the angle between the two;
+  /// The same at the other pole, at least 2 - pole. Where set, sizes grow as a power of the angle between the two;
   /// else half-tangents grade them, with 1/pole there: too coarse for a pole below 0.15.
   std::optional<double> far = {};
   bool both_poles = false;  ///< for a ball between two plates: graded alike to both; `far` is then at the equator

@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "golf/units.hpp"
+#include "mesh/gauss.hpp"
 
 namespace hosel::mesh {
 namespace {
@@ -199,12 +200,11 @@ void finish(PlateMesh& m) {
 }  // namespace
 
 double PlateMesh::area() const {
-  const double g = std::sqrt(0.6);
+  const auto rule = gauss(3);
   double sum = 0;
   for (const auto& e : elements)
-    for (const auto& [x, wx] : {std::pair{-g, 5.0 / 9}, {0.0, 8.0 / 9}, {g, 5.0 / 9}})
-      for (const auto& [y, wy] : {std::pair{-g, 5.0 / 9}, {0.0, 8.0 / 9}, {g, 5.0 / 9}})
-        sum += wx * wy * jacobian(*this, e, Q9::at(x, y)).determinant();
+    for (const auto& [x, wx] : rule)
+      for (const auto& [y, wy] : rule) sum += wx * wy * jacobian(*this, e, Q9::at(x, y)).determinant();
   return sum;
 }
 

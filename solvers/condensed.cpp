@@ -14,6 +14,7 @@
 // CHOLMOD opens a team of four threads for every front, whatever the machine has: on fronts as small as ours their
 // waking costs more than they do. Absent where CHOLMOD is built without OpenMP.
 extern "C" void omp_set_max_active_levels(int) __attribute__((weak));
+extern "C" int omp_get_max_active_levels(void) __attribute__((weak));
 
 namespace hosel::solvers {
 
@@ -53,6 +54,24 @@ Eigen::MatrixXd DenseTangent::on(const std::vector<int>& places, Index kept) con
 
 namespace {
 
+/// No teams of threads on this one until the end of a scope: what calls us may want them.
+class Alone {
+ public:
+  Alone() : before_(omp_get_max_active_levels && omp_set_max_active_levels ? omp_get_max_active_levels() : -1) {
+    if (before_ >= 0) omp_set_max_active_levels(0);
+  }
+  ~Alone() {
+    if (before_ >= 0) omp_set_max_active_levels(before_);
+  }
+  Alone(const Alone&) = delete;
+  Alone& operator=(const Alone&) = delete;
+
+ private:
+  int before_;
+};
+
+[[noreturn]] void no_memory_to_order() { throw NonConvergence("not enough memory to order the tangent matrix"); }
+
 /// Factors of some rows of the matrix among themselves.
 class Part {
  public:
@@ -75,7 +94,7 @@ class Part {
   Part& operator=(const Part&) = delete;
 
   /// Ordering by constrained minimum degree of groups of rows with one pattern, those of `kept` last. `members` and
-  /// `kept` mark rows of `a`.
+  /// `kept` mark rows of `a`. Throws NonConvergence where memory is short.
   void analyse(const SparseTangent& a, const std::vector<char>& members, const std::vector<char>& kept) {
     const auto n = static_cast<int>(a.size());
     const int *start = a.column_starts().data(), *row = a.row_indices().data();
@@ -100,7 +119,9 @@ class Part {
           edges.emplace_back(static_cast<int>(g), other);
       }
     }
-    cholmod_sparse* graph = cholmod_allocate_sparse(groups, groups, edges.size(), 1, 1, 0, CHOLMOD_PATTERN, &common_);
+    // Symmetric, as its upper half states: a graph that is not would be ordered for its product with its transpose.
+    cholmod_sparse* graph = cholmod_allocate_sparse(groups, groups, edges.size(), 1, 1, 1, CHOLMOD_PATTERN, &common_);
+    if (!graph) no_memory_to_order();
     auto *gp = static_cast<int*>(graph->p), *gi = static_cast<int*>(graph->i);
     std::size_t e = 0;
     for (std::size_t g = 0; g < groups; ++g) {
@@ -110,8 +131,9 @@ class Part {
     gp[groups] = static_cast<int>(e);
     std::vector<int> last(groups), permuted(groups);
     for (std::size_t g = 0; g < groups; ++g) last[g] = marked(kept, range[g].first);
-    cholmod_camd(graph, nullptr, 0, last.data(), permuted.data(), &common_);
+    const bool ordered = cholmod_camd(graph, nullptr, 0, last.data(), permuted.data(), &common_) != 0;
     cholmod_free_sparse(&graph, &common_);
+    if (!ordered) no_memory_to_order();
     order_.clear();
     kept_ = 0;
     for (int g : permuted) {
@@ -122,14 +144,17 @@ class Part {
     permute(a);
     cholmod_free_factor(&factor_, &common_);
     factor_ = cholmod_analyze(lower_, &common_);
+    if (!factor_) no_memory_to_order();
   }
 
   /// False where the part is not positive definite. Throws NonConvergence where memory is short.
   bool factorise(const SparseTangent& a) {
     auto* x = static_cast<double*>(lower_->x);
     for (std::size_t q = 0; q < place_.size(); ++q) x[q] = a.values()[static_cast<std::size_t>(place_[q])];
-    if (omp_set_max_active_levels) omp_set_max_active_levels(0);
-    cholmod_factorize(lower_, factor_, &common_);
+    {
+      const Alone alone;
+      cholmod_factorize(lower_, factor_, &common_);
+    }
     if (common_.status == CHOLMOD_OUT_OF_MEMORY)
       throw NonConvergence("not enough memory to factorise the tangent matrix");
     if (common_.status != CHOLMOD_OK) return false;
@@ -185,6 +210,7 @@ class Part {
     place_.clear();
     cholmod_free_sparse(&lower_, &common_);
     lower_ = cholmod_allocate_sparse(n, n, (row.size() + n) / 2, 0, 1, -1, CHOLMOD_REAL, &common_);
+    if (!lower_) no_memory_to_order();
     auto *p = static_cast<int*>(lower_->p), *i = static_cast<int*>(lower_->i);
     for (std::size_t j = 0; j < n; ++j) {
       p[j] = static_cast<int>(place_.size());
@@ -309,7 +335,12 @@ bool CondensedFactorisation::factorise(const SparseTangent& a, const std::vector
   s.ready = false;
   if (s.parts.empty() || kept != s.asked) {
     s.asked = kept;
-    s.analyse(a, apart);
+    try {
+      s.analyse(a, apart);
+    } catch (...) {
+      s.parts.clear();  // some of them may have no order
+      throw;
+    }
   }
   const auto m = static_cast<Index>(kept.size());
   s.schur.setZero(m, m);

@@ -48,7 +48,7 @@ double integrate_to_event(const std::function<void(double, const double*, double
   sundials::check(CVodeSetErrHandlerFn(m, sundials::quiet, nullptr), "CVODE: initialisation");
   sundials::check(CVodeSetUserData(m, &functions), "CVODE: initialisation");
   sundials::check(CVodeSVtolerances(m, options.relative_tolerance, absolute.get()), "CVODE: tolerances");
-  sundials::check(CVodeSetMaxNumSteps(m, options.most_steps), "CVODE: step limit");
+  sundials::check(CVodeSetMaxNumSteps(m, 100000), "CVODE: step limit");
   // By default seven: a corner of friction may ask for a smaller step than they lead to.
   sundials::check(CVodeSetMaxErrTestFails(m, 30), "CVODE: failures of a step");
   if (options.first_step > 0) sundials::check(CVodeSetInitStep(m, options.first_step), "CVODE: first step");

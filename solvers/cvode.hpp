@@ -13,7 +13,6 @@ struct CvodeOptions {
   std::vector<double> absolute;  ///< tolerance of each component
   double first_step = 0;         ///< [s], 0: CVODE chooses
   double largest_step = 0;       ///< [s], 0: no limit
-  long most_steps = 100000;
 };
 
 struct CvodeStatistics {

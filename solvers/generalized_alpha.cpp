@@ -24,6 +24,17 @@ Vector difference(const fem::DofMap& dof_map, const Vector& q0, const Vector& q1
   return x;
 }
 
+/// The mean of all rotations; the identity where there are none.
+Mat3 mean_rotation(const fem::DofMap& dof_map, const Vector& q) {
+  Eigen::Vector4d sum = Eigen::Vector4d::Zero();
+  for (const auto& b : dof_map.blocks()) {
+    if (!b.rotation) continue;
+    const auto r = q.segment<4>(b.q);
+    sum += r.dot(sum) < 0 ? -r : Eigen::Vector4d(r);
+  }
+  return sum.isZero() ? Mat3(Mat3::Identity()) : Eigen::Quaterniond(sum.normalized()).toRotationMatrix();
+}
+
 }  // namespace
 
 std::vector<std::string> GeneralizedAlphaOptions::faults() const {
@@ -32,8 +43,6 @@ std::vector<std::string> GeneralizedAlphaOptions::faults() const {
   if (!(step_max > 0)) out.emplace_back("state step_max, above zero");
   if (!(step_min > 0 && step_min <= step_max)) out.emplace_back("state step_min, above zero and not above step_max");
   if (!(step_first >= 0 && step_first <= step_max)) out.emplace_back("step_first lies between zero and step_max");
-  if (!(error_vector > 0) || !(error_rotation > 0))
-    out.emplace_back("state both error tolerances (infinity: fixed steps)");
   return out;
 }
 
@@ -135,8 +144,8 @@ NewtonReport GeneralizedAlpha::attempt(double h) {
     return tangent_.gather(trial_inertia_ + trial_force_);
   };
   const auto assemble = [&](double inertia) {
-    // Without the exponential map's tangent: by a step's turn it refines little and takes a second pass, and with
-    // contact it would leave the factors not symmetric.
+    // Without the exponential map's tangent: by a step's turn it refines little, and with contact it would leave the
+    // factors not symmetric.
     tangent_.assemble(system_, trial_, {1, to_v, inertia * to_a});
     tangent_step_ = h;
     return tangent_.round_off(system_, trial_);
@@ -156,7 +165,8 @@ NewtonReport GeneralizedAlpha::attempt(double h) {
   fem::begin_step(system_);
   const auto solve = [&] {
     if (!contact_)
-      return newton_.solve({[&](double& scale) { return residual(scale); }, [&] { return assemble(1); }, advance});
+      return newton_.solve({[&](double& scale) { return residual(scale); }, [&] { return assemble(1); }, advance,
+                            [&] { return mean_rotation(system_.dof_map, trial_.q); }});
     return contact_newton_.solve({[&](double& scale, Vector& abrupt) { return residual(scale, &abrupt); }, assemble,
                                   [&] { return tangent_.gather(abrupt_residual(system_, trial_)); },
                                   [&](DenseTangent& sink) {
@@ -178,13 +188,6 @@ NewtonReport GeneralizedAlpha::attempt(double h) {
   }
 
   trial_auxiliary_ = ((1 - af_) * trial_.a + af_ * state_.a - am_ * a0) / (1 - am_);
-  // O. C. Zienkiewicz, Y. M. Xie, Earthquake Eng. Struct. Dyn. 20 (1991): local error of Newmark's family.
-  const Vector e = (beta_ - 1.0 / 6) * h * h * (trial_auxiliary_ - a0);
-  error_ = 0;
-  for (const auto& b : system_.dof_map.blocks()) {
-    const double allowed = b.rotation ? options_.error_rotation : options_.error_vector;
-    error_ = std::max(error_, e.segment(b.v, b.size).cwiseAbs().maxCoeff() / allowed);
-  }
   return report;
 }
 
@@ -244,29 +247,20 @@ double GeneralizedAlpha::advance(double end) {
   // The last two steps share what is left, so that no sliver remains.
   if (h >= left * (1 - 1e-9)) h = left;
   else if (2 * h > left) h = left / 2;
-  const bool adaptive = std::isfinite(options_.error_vector) || std::isfinite(options_.error_rotation);
   for (;;) {
     const NewtonReport report = attempt(h);
-    if (report.converged && (!adaptive || error_ <= 1)) {
+    if (report.converged) {
       accept(h, report);
-      if (adaptive) {
-        const double grow = std::min(2.0, 0.9 * std::cbrt(1 / std::max(error_, 1e-9)));
-        // Small changes are not worth new factors.
-        if (grow > 1.25 || grow < 1) step_ = std::min(options_.step_max, h * grow);
-      } else if (step_ < options_.step_max) {
-        step_ = std::min(options_.step_max, 2 * step_);  // back up after a failure
-      }
+      step_ = std::min(options_.step_max, 2 * step_);  // back up after a failure
       return h;
     }
     ++counts_.rejected;
-    const double shrink = report.converged ? std::clamp(0.9 * std::cbrt(1 / error_), 0.2, 0.7) : 0.5;
-    h *= shrink;
+    h *= 0.5;
     step_ = h;
     if (h < options_.step_min) {
       std::ostringstream text;
       text << "at t = " << state_.time << " s the time step fell below its minimum of " << options_.step_min << " s ("
-           << (report.converged ? "the error stays above its tolerance" : report.reason)
-           << "): allow smaller steps, or look for a load or stiffness that is out of scale";
+           << report.reason << "): allow smaller steps, or look for a load or stiffness that is out of scale";
       throw NonConvergence(text.str());
     }
   }

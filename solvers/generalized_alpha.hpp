@@ -1,4 +1,4 @@
-/// Time integration of a fem::System: Lie-group generalized-alpha with adaptive steps.
+/// Time integration of a fem::System: Lie-group generalized-alpha with fixed steps, halved where one fails.
 ///
 /// M. Arnold, O. Bruels, "Convergence of the generalized-alpha scheme for constrained mechanical
 /// systems", Multibody Syst. Dyn. 18 (2007) 185-202, in the form without constraints:
@@ -22,14 +22,12 @@ namespace hosel::solvers {
 struct GeneralizedAlphaOptions {
   double rho_inf = -1;  ///< spectral radius at infinite frequency, in [0, 1]; must be stated
   NewtonOptions newton;
-  double step_max = 0;    ///< the fixed step where no error tolerance is set [s]
+  double step_max = 0;    ///< the fixed step [s]
   double step_min = 0;    ///< below this a failing step gives up [s]
   double step_first = 0;  ///< 0: step_max [s]
   /// First guess of a step: accelerations go on as they changed in the last one or two, or (false) there are none: the
   /// better guess where contact makes them jump.
   bool predict_acceleration = true;
-  double error_vector = 0;    ///< error allowed per step of a plain number [m]; inf: fixed steps
-  double error_rotation = 0;  ///< of a rotation [rad]; inf: fixed steps
 
   std::vector<std::string> faults() const;
 };
@@ -69,7 +67,7 @@ class GeneralizedAlpha {
   /// NonConvergence where a mass matrix that is asked is singular.
   GeneralizedAlpha(fem::System& system, GeneralizedAlphaOptions options, fem::State initial);
 
-  /// One accepted step, no further than `end`; shortened on failure of Newton and on too large an error. Throws
+  /// One accepted step, no further than `end`; shortened on failure of Newton. Throws
   /// NonConvergence when it would fall below step_min. Returns the size of the step [s].
   double advance(double end);
   /// Tries one step of exactly `h`; on failure nothing has changed.
@@ -81,7 +79,6 @@ class GeneralizedAlpha {
   /// inertia + force at the accepted state: on imposed equations what holds them there, zero elsewhere
   /// to the tolerance of Newton.
   const Vector& reactions() const { return residual_; }
-  double error() const { return error_; }  ///< of the last step, 1 at the tolerance
 
   struct Counts {
     long steps = 0, rejected = 0, iterations = 0, factorisations = 0, dense_factorisations = 0;
@@ -120,7 +117,7 @@ class GeneralizedAlpha {
   Vector earlier_a_, earliest_a_;  // of the one and two states before, a step apart; empty at the start
   Vector inertia_, trial_inertia_, trial_force_, residual_;
   std::vector<Index> imposed_;
-  double step_ = 0, last_step_ = 0, tangent_step_ = 0, error_ = 0;
+  double step_ = 0, last_step_ = 0, tangent_step_ = 0;
   double friction_before_ = 0, viscous_before_ = 0,
          external_before_ = 0;  // what the terms' cumulative figures began with
   double imposed_work_ = 0;

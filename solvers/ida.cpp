@@ -14,6 +14,9 @@
 namespace hosel::solvers {
 namespace {
 
+// Tolerances: relative; of positions [m] and quaternions' components; of velocities [m/s] and [rad/s].
+constexpr double kRelative = 1e-6, kAbsolutePosition = 1e-7, kAbsoluteVelocity = 1e-4;
+
 using fem::Index;
 using fem::Vector;
 
@@ -105,7 +108,7 @@ int residual(double t, N_Vector yv, N_Vector ypv, N_Vector fv, void* user) {
 }  // namespace
 
 void integrate_ida(const fem::System& system, const fem::State& initial, const std::vector<double>& times,
-                   const IdaOptions& options, const std::function<void(const fem::State&)>& observer) {
+                   const std::function<void(const fem::State&)>& observer) {
   Problem problem(system);
   const sundials::Context owner = sundials::context();
   SUNContext context = owner.get();
@@ -119,11 +122,11 @@ void integrate_ida(const fem::System& system, const fem::State& initial, const s
     const auto& b = blocks[i];
     const Index nq = b.rotation ? 4 : b.size;
     for (Index k = 0; k < nq; ++k)
-      py[problem.q_at[i] + k] = initial.q[b.q + k], pt[problem.q_at[i] + k] = options.absolute_position;
+      py[problem.q_at[i] + k] = initial.q[b.q + k], pt[problem.q_at[i] + k] = kAbsolutePosition;
     for (Index k = 0; k < b.size; ++k) {
       py[problem.v_at[i] + k] = initial.v[b.v + k];
       pyp[problem.v_at[i] + k] = initial.a[b.v + k];
-      pt[problem.v_at[i] + k] = options.absolute_velocity;
+      pt[problem.v_at[i] + k] = kAbsoluteVelocity;
       if (!b.rotation) pyp[problem.q_at[i] + k] = initial.v[b.v + k];
     }
     if (b.rotation)
@@ -136,10 +139,9 @@ void integrate_ida(const fem::System& system, const fem::State& initial, const s
   void* const ida = memory.get();
   sundials::check(IDAInit(ida, residual, initial.time, y.get(), yp.get()), "IDA: initialisation");
   sundials::check(IDASetErrHandlerFn(ida, sundials::quiet, nullptr), "IDA: initialisation");
-  sundials::check(IDASVtolerances(ida, options.relative, tolerance.get()), "IDA: tolerances");
+  sundials::check(IDASVtolerances(ida, kRelative, tolerance.get()), "IDA: tolerances");
   sundials::check(IDASetUserData(ida, &problem), "IDA: initialisation");
   sundials::check(IDASetMaxNumSteps(ida, 1000000), "IDA: step limit");
-  if (options.step_max > 0) sundials::check(IDASetMaxStep(ida, options.step_max), "IDA: largest step");
   sundials::check(IDASetLinearSolver(ida, linear.get(), J.get()), "IDA: linear solver");
   double reached = initial.time;
   for (double t : times) {

@@ -7,18 +7,11 @@
 
 namespace hosel::solvers {
 
-struct IdaOptions {
-  double relative = 1e-6;           ///< [-]
-  double absolute_position = 1e-7;  ///< [m] and quaternion components
-  double absolute_velocity = 1e-4;  ///< [m/s] and [rad/s]
-  double step_max = 0;              ///< 0: none [s]
-};
-
 /// Unknowns are q and v, block by block; F = (q' - v, inertia(q, v, v') + force(q, v)), imposed blocks hold
 /// to their motion. The Jacobian is banded and differenced by IDA, so nothing of our tangents enters.
 /// `initial.a` must be consistent. `observer` sees the state at each of `times` (increasing). The terms'
 /// history does not move: for systems without history only. Throws NonConvergence.
 void integrate_ida(const fem::System& system, const fem::State& initial, const std::vector<double>& times,
-                   const IdaOptions& options, const std::function<void(const fem::State&)>& observer);
+                   const std::function<void(const fem::State&)>& observer);
 
 }  // namespace hosel::solvers

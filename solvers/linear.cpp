@@ -35,14 +35,6 @@ SparseTangent::SparseTangent(const fem::System& system, Terms terms) : terms_(te
       reduced_[e] = static_cast<int>(free_.size());
       free_.push_back(static_cast<Index>(e));
     }
-  rotation_of_.assign(n, -1);
-  for (const auto& b : system.dof_map.blocks())
-    if (b.rotation) {
-      for (Index i = 0; i < 3; ++i)
-        rotation_of_[static_cast<std::size_t>(b.v + i)] = static_cast<int>(rotation_at_.size());
-      rotation_at_.push_back(b.v);
-    }
-
   std::vector<std::vector<Index>> blocks;
   for (const auto& term : system.terms)
     if (terms_ == Terms::all || !term->abrupt()) term->pattern(blocks);
@@ -76,34 +68,16 @@ void SparseTangent::scatter(const Vector& reduced, Vector& full) const {
   for (Index i = 0; i < size(); ++i) full[free_[static_cast<std::size_t>(i)]] = reduced[i];
 }
 
-void SparseTangent::add_terms(const fem::System& system, const fem::State& trial, const fem::Weights& weights) {
+void SparseTangent::assemble(const fem::System& system, const fem::State& trial, const fem::Weights& weights) {
+  std::ranges::fill(values_, 0.0);
   turn_ = 0;
   for (const auto& term : system.terms)
     if (terms_ == Terms::all || !term->abrupt()) term->tangent(trial, weights, *this);
 }
 
-void SparseTangent::assemble(const fem::System& system, const fem::State& trial, const fem::Weights& weights,
-                             const Vector& increment) {
-  std::ranges::fill(values_, 0.0);
-  double largest = 0;
-  if (increment.size() > 0)
-    for (Index at : rotation_at_) largest = std::max(largest, increment.segment<3>(at).squaredNorm());
-  // Below this the transform changes the stiffness by less than Newton can feel; it costs a second pass.
-  constexpr double negligible = 1e-4;
-  if (largest < negligible * negligible) {
-    add_terms(system, trial, weights);
-    return;
-  }
-  if (weights.damping != 0 || weights.mass != 0) add_terms(system, trial, {0, weights.damping, weights.mass});
-  transform_.clear();
-  for (Index at : rotation_at_) transform_.push_back(fem::rotation_tangent(increment.segment<3>(at)));
-  add_terms(system, trial, {weights.stiffness, 0, 0});
-  transform_.clear();
-}
-
 SparseTangent::Scatter SparseTangent::make_scatter(const std::vector<Index>& rows,
                                                    const std::vector<Index>& columns) const {
-  Scatter s{rows, columns, {}, {}};
+  Scatter s{rows, columns, {}};
   s.to.reserve(rows.size() * columns.size());
   for (Index c : columns) {
     const int column = reduced_[static_cast<std::size_t>(c)];
@@ -120,17 +94,6 @@ SparseTangent::Scatter SparseTangent::make_scatter(const std::vector<Index>& row
       s.to.push_back(static_cast<int>(it - rows_.begin()));
     }
   }
-  for (std::size_t j = 0; j < columns.size(); ++j) {
-    const int r = rotation_of_[static_cast<std::size_t>(columns[j])];
-    if (r < 0 || columns[j] != rotation_at_[static_cast<std::size_t>(r)]) continue;
-    std::array<int, 4> places{static_cast<int>(j), -1, -1, r};
-    for (int k = 1; k < 3; ++k) {
-      const auto it = std::ranges::find(columns, columns[j] + k);
-      if (it == columns.end()) throw std::logic_error("a tangent block splits a rotation");
-      places[static_cast<std::size_t>(k)] = static_cast<int>(it - columns.begin());
-    }
-    s.rotations.push_back(places);
-  }
   return s;
 }
 
@@ -139,26 +102,14 @@ void SparseTangent::add(const std::vector<Index>& rows, const std::vector<Index>
   if (turn_ == scatters_.size()) scatters_.push_back(make_scatter(rows, columns));
   Scatter& s = scatters_[turn_++];
   if (s.rows != rows || s.columns != columns) s = make_scatter(rows, columns);
-  const bool turned = !transform_.empty() && !s.rotations.empty();
-  if (turned) {
-    scratch_ = block;
-    for (const auto& p : s.rotations) {
-      const Mat3& t = transform_[static_cast<std::size_t>(p[3])];
-      for (int k = 0; k < 3; ++k)
-        scratch_.col(p[static_cast<std::size_t>(k)]) = block.col(p[0]) * t(0, k) + block.col(p[1]) * t(1, k) +
-                                                       block.col(p[2]) * t(2, k);
-    }
-  }
-  const Eigen::Ref<const Eigen::MatrixXd> from = turned ? Eigen::Ref<const Eigen::MatrixXd>(scratch_) : block;
   const int* to = s.to.data();
-  for (Index j = 0; j < from.cols(); ++j)
-    for (Index i = 0; i < from.rows(); ++i, ++to)
-      if (*to >= 0) values_[static_cast<std::size_t>(*to)] += from(i, j);
+  for (Index j = 0; j < block.cols(); ++j)
+    for (Index i = 0; i < block.rows(); ++i, ++to)
+      if (*to >= 0) values_[static_cast<std::size_t>(*to)] += block(i, j);
 }
 
 void SparseTangent::add_all(const std::vector<std::vector<Index>>& equations,
                             const std::vector<Eigen::MatrixXd>& blocks) {
-  if (!transform_.empty()) return TangentSink::add_all(equations, blocks);
   const std::size_t first = turn_;
   turn_ += blocks.size();
   if (scatters_.size() < turn_) scatters_.resize(turn_);
@@ -236,7 +187,7 @@ struct Factorisation::State {
     if (chain && !(chain->est_flops >= 0 && chain->est_flops < kDense * chain->lnz))
       klu_free_symbolic(&chain, &chain_common);
     if (!chain && umfpack_di_symbolic(n, n, starts, rows, values.data(), &symbolic, control.data(), nullptr) < 0)
-      throw NonConvergence("the tangent matrix cannot be ordered: it holds numbers that are not finite");
+      throw NonConvergence("not enough memory to order the tangent matrix");
   }
   /// UMFPACK's status, also for KLU's.
   int factorise(int* starts, int* rows) {
@@ -275,6 +226,11 @@ void Factorisation::factorise(const SparseTangent& matrix) {
   // Both libraries ask for pointers that they do not write through.
   auto *starts = const_cast<int*>(matrix.column_starts().data()), *rows = const_cast<int*>(matrix.row_indices().data());
   s.values.assign(matrix.values().begin(), matrix.values().end());
+  // Neither library looks: what is no number would pass for a singular matrix.
+  if (!std::ranges::all_of(s.values, [](double x) { return std::isfinite(x); })) {
+    forget();
+    throw NonConvergence("the tangent matrix holds numbers that are not finite: some motion or stiffness overflows");
+  }
   if (s.matrix != &matrix) {
     s.forget_numbers();
     s.forget_order();

@@ -1,7 +1,7 @@
-/// One sparse matrix of fixed pattern for the whole system, and its LU factors (UMFPACK).
+/// One sparse matrix of fixed pattern for the whole system, and its LU factors (KLU where they hardly fill, else
+/// UMFPACK).
 #pragma once
 
-#include <array>
 #include <memory>
 #include <span>
 #include <vector>
@@ -29,12 +29,8 @@ class SparseTangent final : public fem::TangentSink {
   Vector gather(const Vector& full) const;                  ///< entries of the free equations
   void scatter(const Vector& reduced, Vector& full) const;  ///< writes the free equations only
 
-  /// Assembles weights.stiffness K T + weights.damping C + weights.mass M, where T is the tangent of
-  /// the exponential map at `increment` (DofMap::size() entries, body-frame rotation increments
-  /// since the start of the step): the derivative of the residual by the increment itself. An empty
-  /// increment means T = 1.
-  void assemble(const fem::System& system, const fem::State& trial, const fem::Weights& weights,
-                const Vector& increment = {});
+  /// Assembles weights.stiffness K + weights.damping C + weights.mass M, derivatives by increments from `trial`.
+  void assemble(const fem::System& system, const fem::State& trial, const fem::Weights& weights);
 
   void add(const std::vector<Index>& rows, const std::vector<Index>& columns,
            const Eigen::Ref<const Eigen::MatrixXd>& block) override;
@@ -53,23 +49,17 @@ class SparseTangent final : public fem::TangentSink {
  private:
   struct Scatter {
     std::vector<Index> rows, columns;
-    std::vector<int> to;                        // place in values_, -1 where imposed
-    std::vector<std::array<int, 4>> rotations;  // places of a rotation's columns, and its number
+    std::vector<int> to;  // place in values_, -1 where imposed
   };
-  void add_terms(const fem::System& system, const fem::State& trial, const fem::Weights& weights);
   Scatter make_scatter(const std::vector<Index>& rows, const std::vector<Index>& columns) const;
 
   Terms terms_;
   std::vector<Index> free_;
-  std::vector<int> reduced_;        // equation -> free row, or -1
-  std::vector<int> rotation_of_;    // equation -> rotation number, or -1
-  std::vector<Index> rotation_at_;  // rotation number -> its first equation
-  std::vector<Mat3> transform_;     // T of each rotation during the stiffness pass, else empty
+  std::vector<int> reduced_;  // equation -> free row, or -1
   std::vector<int> starts_, rows_;
   std::vector<double> values_;
   std::vector<Scatter> scatters_;
   std::size_t turn_ = 0;
-  Eigen::MatrixXd scratch_;
 };
 
 /// LU of a SparseTangent: ordered once, factorised again whenever asked, kept while wanted.
@@ -80,7 +70,7 @@ class Factorisation {
   Factorisation(Factorisation&&) noexcept;
   Factorisation& operator=(Factorisation&&) noexcept;
 
-  /// Throws NonConvergence where the matrix is singular to working precision.
+  /// Throws NonConvergence where the matrix is singular to working precision or not finite, or memory is short.
   void factorise(const SparseTangent& matrix);
   bool ready() const;
   void forget();  ///< the factors, not the ordering

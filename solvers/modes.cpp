@@ -80,7 +80,9 @@ Index below(const Sparse& K, const Sparse& M, double lambda) {
 Pairs all_modes(const Sparse& K, const Sparse& M, double shift) {
   // Inverted, so that the lowest modes come out best: M phi = mu (K + shift M) phi.
   const dense::Eigenpairs all = dense::eigenpairs(Eigen::MatrixXd(M), Eigen::MatrixXd(K + shift * M));
-  if (!all.converged || !(all.values.minCoeff() > 0))
+  if (!all.converged)
+    throw NonConvergence("modes need a state at which the stiffness is not negative: this one buckles");
+  if (!(all.values.minCoeff() > 0))
     throw NonConvergence("the eigenvalue problem was not solved: is there inertia everywhere?");
   const Vector mu = all.values.reverse();
   return {mu.cwiseInverse().array() - shift,

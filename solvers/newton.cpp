@@ -7,6 +7,14 @@
 #include "solvers/errors.hpp"
 
 namespace hosel::solvers {
+namespace {
+
+/// Turns the vectors that begin at `rows`.
+void turn(const std::vector<Index>& rows, const Mat3& rotation, Vector& x) {
+  for (const Index row : rows) x.segment<3>(row) = (rotation * x.segment<3>(row)).eval();
+}
+
+}  // namespace
 
 std::vector<std::string> NewtonOptions::faults() const {
   std::vector<std::string> out;
@@ -39,6 +47,11 @@ double IncrementTest::measure(const Vector& increment) const {
 Newton::Newton(const fem::System& system, SparseTangent& tangent, NewtonOptions options)
     : tangent_(tangent), options_(options), increments_(system, tangent, options) {
   if (const auto faults = options.faults(); !faults.empty()) throw std::invalid_argument("Newton: " + faults.front());
+  for (const auto& b : system.dof_map.blocks()) {
+    if (b.rotation || b.size != 3) continue;
+    const int first = tangent.row(b.v);
+    if (first >= 0 && tangent.row(b.v + 1) == first + 1 && tangent.row(b.v + 2) == first + 2) vectors_.push_back(first);
+  }
 }
 
 NewtonReport Newton::solve(const NewtonProblem& problem) {
@@ -65,11 +78,17 @@ NewtonReport Newton::solve(const NewtonProblem& problem) {
       // A small residual needs no better factor: only the increment is still to be confirmed.
       if (!factors_.ready() || (report.residual > options_.renew_above * before && report.residual > tolerance)) {
         round_off_ = problem.assemble();
+        if (problem.attitude) attitude_ = problem.attitude();
         factors_.factorise(tangent_);
         ++report.factorisations;
       }
       before = report.residual;
-      const Vector step = -factors_.solve(r);
+      // A tangent in the axes of the bodies hardly changes while they turn: that of one attitude serves another.
+      Mat3 turned = Mat3::Identity();
+      if (problem.attitude) turned = problem.attitude() * attitude_.transpose();
+      turn(vectors_, turned.transpose(), r);
+      Vector step = -factors_.solve(r);
+      turn(vectors_, turned, step);
       increment = increments_.measure(step);
       problem.advance(step);
     }

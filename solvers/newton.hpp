@@ -49,6 +49,9 @@ struct NewtonProblem {
   /// The tangent at the present iterate; returns the residual that round-off alone may leave.
   std::function<double()> assemble;
   std::function<void(const Vector&)> advance;  ///< moves the iterate by an increment
+  /// How far all bodies have turned at the present iterate, from anywhere: kept factors turn with them. The solution
+  /// does not depend on it. Empty: factors stay as they are.
+  std::function<Mat3()> attitude = {};
 };
 
 /// Solves residual = 0. `factors` may come from earlier calls and are kept for later ones. Never
@@ -64,7 +67,9 @@ class Newton {
   NewtonOptions options_;
   IncrementTest increments_;
   Factorisation factors_;
-  double round_off_ = 0;  // as of the last assembly; no residual can be smaller
+  double round_off_ = 0;              // as of the last assembly; no residual can be smaller
+  std::vector<Index> vectors_;        // rows at which three components of a global vector begin
+  Mat3 attitude_ = Mat3::Identity();  // at the last assembly
 };
 
 }  // namespace hosel::solvers

@@ -7,31 +7,37 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <stdexcept>
 
 #include "solvers/contact_newton.hpp"
 #include "solvers/errors.hpp"
 #include "solvers/sundials.hpp"
 
 namespace hosel::solvers {
+namespace {
 
-StaticsReport solve_static(const fem::System& system, const fem::State& start, const StaticsOptions& options) {
+constexpr int kBisections = 8;  // of failing load steps
+
+}  // namespace
+
+fem::State solve_static(const fem::System& system, const fem::State& start, const StaticsOptions& options) {
+  if (options.load_steps < 1) throw std::invalid_argument("statics: at least one load step");
   const bool contact = std::ranges::any_of(system.terms, [](const auto& term) { return term->abrupt(); });
   SparseTangent tangent(system, contact ? SparseTangent::Terms::smooth : SparseTangent::Terms::all);
   Newton newton(system, tangent, options.newton);
   ContactNewton contact_newton(system, tangent, options.newton);
-  StaticsReport out;
-  out.state = start;
-  for (const auto& p : system.prescribed) p->impose(out.state);
+  fem::State out = start;
+  for (const auto& p : system.prescribed) p->impose(out);
   double scale0 = 0;
   fem::begin_step(system);
-  const Vector r0 = tangent.gather(fem::unbalanced(system, out.state, &scale0));
-  double done = 0, step = 1.0 / std::max(1, options.load_steps);
+  const Vector r0 = tangent.gather(fem::unbalanced(system, out, &scale0));
+  double done = 0, step = 1.0 / options.load_steps;
   int bisections = 0, augmented = 0;
-  fem::State trial = out.state;
+  fem::State trial = out;
   while (done < 1) {
     double next = done + step;
     if (next > 1 - 1e-9) next = 1;
-    trial = out.state;
+    trial = out;
     Vector full = Vector::Zero(system.dof_map.size());
     const auto residual = [&](double& scale) {
       const Vector r = tangent.gather(fem::unbalanced(system, trial, &scale)) - (1 - next) * r0;
@@ -66,23 +72,20 @@ StaticsReport solve_static(const fem::System& system, const fem::State& start, c
                                         },
                                         advance})
                 : newton.solve({residual, assemble, advance});
-    out.iterations += report.iterations;
     if (report.converged && next == 1 && fem::augment(system, trial)) {
-      out.state = trial;
+      out = trial;
       if (++augmented > options.newton.max_iterations)
         throw NonConvergence("no static equilibrium found: the multipliers of the contact do not settle");
     } else if (report.converged) {
-      out.state = trial;
+      out = trial;
       done = next;
-      ++out.load_steps;
-    } else if (++bisections > options.max_bisections) {
+    } else if (++bisections > kBisections) {
       throw NonConvergence("no static equilibrium found at " + std::to_string(100 * next) + " % of the load (" +
                            report.reason + "): use more load steps, or look for a body that nothing holds");
     } else {
       step /= 2;
     }
   }
-  out.reactions = fem::unbalanced(system, out.state);
   return out;
 }
 
@@ -111,14 +114,19 @@ int kinsol_residual(N_Vector y, N_Vector f, void* user) {
 int kinsol_tangent(N_Vector y, N_Vector, SUNMatrix J, void* user, N_Vector, N_Vector) {
   auto& p = *static_cast<KinsolProblem*>(user);
   p.set(y);
-  p.tangent.assemble(p.system, p.trial, {1, 0, 0}, p.x);
-  Eigen::Map<Eigen::MatrixXd>(SUNDenseMatrix_Data(J), p.tangent.size(), p.tangent.size()) = p.tangent.dense();
+  p.tangent.assemble(p.system, p.trial, {1, 0, 0});
+  Eigen::Map<Eigen::MatrixXd> columns(SUNDenseMatrix_Data(J), p.tangent.size(), p.tangent.size());
+  columns = p.tangent.dense();
+  // Unknown is the whole rotation since the start, not the next increment.
+  for (const auto& b : p.system.dof_map.blocks())
+    if (const int first = p.tangent.row(b.v); b.rotation && first >= 0 && p.tangent.row(b.v + 2) == first + 2)
+      columns.middleCols<3>(first) *= fem::rotation_tangent(p.x.segment<3>(b.v));
   return 0;
 }
 
 }  // namespace
 
-StaticsReport solve_static_kinsol(const fem::System& system, const fem::State& start, double residual_tolerance) {
+fem::State solve_static_kinsol(const fem::System& system, const fem::State& start, double residual_tolerance) {
   fem::State from = start;
   for (const auto& p : system.prescribed) p->impose(from);
   KinsolProblem problem{system, from, SparseTangent(system), from, Vector::Zero(system.dof_map.size())};
@@ -141,13 +149,11 @@ StaticsReport solve_static_kinsol(const fem::System& system, const fem::State& s
   sundials::check(KINSetMaxNewtonStep(kin, 1e3), "KINSOL: largest step");
   sundials::check(KINSetMaxSetupCalls(kin, 1), "KINSOL: tangents");
   const int status = KINSol(kin, y.get(), KIN_LINESEARCH, ones.get(), ones.get());
-  long iterations = 0;
-  sundials::check(KINGetNumNonlinSolvIters(kin, &iterations), "KINSOL: iterations");
   problem.set(y.get());
   if (status != KIN_SUCCESS && status != KIN_INITIAL_GUESS_OK)  // a step too short to go on is no equilibrium
     throw NonConvergence("KINSOL found no static equilibrium (flag " + std::to_string(status) +
                          "): start nearer to it, or look for a body that nothing holds");
-  return {problem.trial, fem::unbalanced(system, problem.trial), static_cast<int>(iterations), 1};
+  return problem.trial;
 }
 
 }  // namespace hosel::solvers

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <exception>
 #include <functional>
 #include <optional>
 #include <stdexcept>
@@ -55,11 +56,15 @@ Eigen::VectorXd fitted(const Reduced& model, const std::vector<Blow>& blows, con
     return true;
   };
   std::optional<solvers::LeastSquaresFit> best;
+  std::exception_ptr failed;
   for (const Eigen::VectorXd& start : model.starts) {
-    const auto found = solvers::least_squares(residuals, int(7 * target.size()), start, model.bounds,
-                                              {.starts = 1, .iterations = 400});
-    if (!best || found.cost < best->cost) best = found;
+    try {
+      const auto found = solvers::least_squares(residuals, int(7 * target.size()), start, model.bounds,
+                                                {.starts = 1, .iterations = 400});
+      if (!best || found.cost < best->cost) best = found;
+    } catch (const solvers::NonConvergence&) { failed = std::current_exception(); }
   }
+  if (!best) std::rethrow_exception(failed);
   const std::vector<bool> at_end = solvers::at_bounds(best->parameters, model.bounds);
   for (std::size_t k = 0; k < at_end.size(); ++k)
     if (at_end[k]) at_bound.push_back(model.name + ": " + model.parameters[k]);

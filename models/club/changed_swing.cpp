@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 #include "golf/shaft_library.hpp"
 
@@ -9,6 +10,8 @@ namespace hosel::models {
 
 std::vector<SwingSample> changed_swing(const Club& declared, const SwingOptions& as_declared, const GripMotion& motion,
                                        const ClubChange& c, double begin, double end) {
+  if (c.hosel.norm() > 0 && as_declared.joint.kind != HeadJoint::Kind::rigid)
+    throw std::invalid_argument("a yielding hosel is a joint of its own: state a rigid one between shaft and head");
   Club club = declared;
   club.shaft = scaled(*declared.shaft, std::exp(c.bending), std::exp(c.torsion));
   club.shaft->damping_time = declared.shaft->damping_time + c.damping_time;
@@ -30,7 +33,7 @@ std::vector<SwingSample> changed_swing(const Club& declared, const SwingOptions&
     for (int a = 0; a < 3; ++a) k.rotation[a] = compliance[a] > 0 ? std::min(firm, 1 / compliance[a]) : firm;
     return k;
   };
-  if (c.hosel.norm() > 0) { options.joint = {.kind = HeadJoint::Kind::spring, .stiffness = spring(c.hosel)}; }
+  if (c.hosel.norm() > 0) options.joint = {.kind = HeadJoint::Kind::spring, .stiffness = spring(c.hosel)};
   GripDrive drive{.motion = [&](double t) { return motion.at(t); }};
   if (c.clamp.norm() > 0) {
     drive.kind = GripDrive::Kind::hands;

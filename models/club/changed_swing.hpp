@@ -9,7 +9,8 @@ namespace hosel::models {
 
 /// Samples from equilibrium at `begin` to `end` [s], the grip's motion given. Mass damping, modal damping ratios and
 /// centrifugal stiffening of the change are matters of the linear bench: the swing has none of them to change. Throws
-/// solvers::NonConvergence, and std::invalid_argument on a club that no body can be.
+/// solvers::NonConvergence, and std::invalid_argument on a club that no body can be, or on a yielding hosel where the
+/// declared joint is not rigid.
 std::vector<SwingSample> changed_swing(const Club& declared, const SwingOptions& as_declared, const GripMotion& motion,
                                        const ClubChange& change, double begin, double end);
 

@@ -114,7 +114,7 @@ LoadedShaft loaded_by_grip(const Blow& blow, const GripLoad& load, double grip_p
     alpha = acceleration.tail<3>();
     move(a, alpha, w);
     const fem::Vector q = s.q;
-    s = solvers::solve_static(system, s, {.newton = newton, .load_steps = round == 0 ? 4 : 1}).state;
+    s = solvers::solve_static(system, s, {.newton = newton, .load_steps = round == 0 ? 4 : 1});
     change = (s.q - q).cwiseAbs().maxCoeff();
   }
   move(a, alpha, w);

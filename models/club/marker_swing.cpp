@@ -81,8 +81,8 @@ double marker_error(const MarkerSwing& swing, const GripMotion& motion, const st
     Vec3 hosel(0, 0, -swing.length), shift = Vec3::Zero(), twist = Vec3::Zero();
     if (!samples.empty()) {
       while (at + 2 < samples.size() && samples[at + 1].time < t) ++at;
-      const SwingSample &a = samples[at], &b = samples[at + 1];
-      const double w = std::clamp((t - a.time) / (b.time - a.time), 0.0, 1.0);
+      const SwingSample &a = samples[at], &b = samples[std::min(at + 1, samples.size() - 1)];
+      const double w = b.time > a.time ? std::clamp((t - a.time) / (b.time - a.time), 0.0, 1.0) : 0;
       shift = (1 - w) * Vec3(a.lead, a.droop, a.shortening) + w * Vec3(b.lead, b.droop, b.shortening);
       twist = (1 - w) * a.twist + w * b.twist;
     }

@@ -12,7 +12,17 @@
 namespace hosel::models {
 namespace {
 
-constexpr double kInf = std::numeric_limits<double>::infinity();
+/// Sets a value until the end of a scope, also where that is left by an exception.
+class Held {
+ public:
+  Held(std::optional<double>& place, double time) : place_(place) { place_ = time; }
+  ~Held() { place_.reset(); }
+  Held(const Held&) = delete;
+  Held& operator=(const Held&) = delete;
+
+ private:
+  std::optional<double>& place_;
+};
 
 }  // namespace
 
@@ -168,12 +178,11 @@ solvers::NewtonOptions Swing::newton() const {
 fem::State Swing::equilibrium(double time) {
   if (drive_.kind != GripDrive::Kind::prescribed && drive_.kind != GripDrive::Kind::hands)
     throw std::invalid_argument("a club that nothing holds has no equilibrium");
-  held_ = time;
+  const Held held(held_, time);
   fem::State s = straight(time);
   s.v.setZero();
-  s = options_.kinsol ? solvers::solve_static_kinsol(system_, s, 1e-6).state
-                      : solvers::solve_static(system_, s, {.newton = newton(), .load_steps = 1}).state;
-  held_.reset();
+  s = options_.kinsol ? solvers::solve_static_kinsol(system_, s, 1e-6)
+                      : solvers::solve_static(system_, s, {.newton = newton(), .load_steps = 1});
   s.time = time;
   return s;
 }
@@ -215,12 +224,11 @@ fem::State Swing::carried(const fem::State& shape, const fem::Pose& from, const 
 }
 
 fem::State Swing::hold(double time, double seconds) {
-  held_ = time;
+  const Held held(held_, time);
   fem::State s = straight(time);
   s.time = time - seconds;
   solvers::GeneralizedAlpha run = scheme(s);
   while (run.time() < time - 1e-9 * seconds) run.advance(time);
-  held_.reset();
   s = run.state();
   s.time = time;
   return s;
@@ -272,14 +280,10 @@ SwingSample Swing::sample(const fem::State& s, const fem::Vector& reactions) con
 }
 
 solvers::GeneralizedAlpha Swing::scheme(const fem::State& from) {
-  return {system_,
-          {.rho_inf = options_.rho_inf,
-           .newton = newton(),
-           .step_max = options_.step,
-           .step_min = options_.step / 1024,
-           .error_vector = kInf,
-           .error_rotation = kInf},
-          from};
+  return {
+      system_,
+      {.rho_inf = options_.rho_inf, .newton = newton(), .step_max = options_.step, .step_min = options_.step / 1024},
+      from};
 }
 
 fem::State Swing::run(const fem::State& from, double end, const Observer& observer) {
@@ -309,7 +313,7 @@ fem::State Swing::by_ida(const fem::State& consistent, double end, const StateOb
   fem::State last = consistent;
   ledger_ = {};
   counts_ = {};
-  solvers::integrate_ida(system_, consistent, times, {}, [&](const fem::State& s) {
+  solvers::integrate_ida(system_, consistent, times, [&](const fem::State& s) {
     observer(sample(s, fem::unbalanced(system_, s)), s);
     last = s;
     ++counts_.steps;

@@ -63,22 +63,23 @@ ElasticPlate::ElasticPlate(FeImpactOptions sphere, const ElasticSolid& plate, co
     throw std::invalid_argument("elastic plate: " + faults.front());
 }
 
-Launch ElasticPlate::launch(const Blow& blow) const {
+FeOutcome ElasticPlate::run(const Blow& blow) const {
   if (std::isfinite(blow.club.head.mass)) throw std::invalid_argument("elastic plate: it is a wall, not a head");
   Blow instead = blow;
   PatchFriction& patch = instead.contact.patch;
   patch.coefficient *= friction_;
   if (patch.at_rest) patch.at_rest->coefficient *= friction_;
-  Launch out = Impact(stand_in_).launch(instead);
+  FeOutcome outcome = Impact(stand_in_).run(instead);
+  Launch& out = outcome.launch;
   const std::optional<double> e_t = tangential_restitution(blow, out);
-  if (!e_t) return out;
+  if (!e_t) return outcome;
   const FirstContact contact = first_contact(blow);
   const Vec3 &normal = contact.normal, slip = contact.slip();
   const double i = blow.ball.inertia_factor;
   const Vec3 push = (1 + *e_t) * i / (1 + i) * slip;
   out.velocity = out.velocity.dot(normal) * normal + push;
   out.spin = -normal.cross(push) / (i * blow.ball.radius);
-  return out;
+  return outcome;
 }
 
 }  // namespace hosel::models

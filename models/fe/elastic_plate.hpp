@@ -37,7 +37,9 @@ class ElasticPlate final : public ImpactModel {
   /// where it is not, or where no stand-in exists: like bodies would need an incompressible one.
   ElasticPlate(FeImpactOptions sphere, const ElasticSolid& plate, const Ball& ball);
   /// Of a blow by a wall, the ball at rest and without spin. Throws what the finite-element model throws.
-  Launch launch(const Blow& blow) const override;
+  Launch launch(const Blow& blow) const override { return run(blow).launch; }
+  /// The same with what the stand-in was solved to.
+  FeOutcome run(const Blow& blow) const;
 
  private:
   FeImpactOptions stand_in_;

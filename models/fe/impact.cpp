@@ -166,7 +166,6 @@ solvers::GeneralizedAlphaOptions time_options(const ImpactBodies& bodies, const 
   options.step_first = step / 16;  // the first touch is the roughest part
   options.step_min = step / 1024;
   options.predict_acceleration = false;
-  options.error_vector = options.error_rotation = INFINITY;
   return options;
 }
 

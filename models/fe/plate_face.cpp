@@ -70,6 +70,18 @@ std::vector<std::string> PlateDesign::faults() const {
   return out;
 }
 
+double PlateDesign::mass() const {
+  constexpr int across = 240, up = 160;  // cells over the outline's extent
+  const Vector2d extent = outline.extent(), cell(2 * extent.x() / across, 2 * extent.y() / up);
+  double volume = 0;
+  for (int j = 0; j < up; ++j)
+    for (int i = 0; i < across; ++i) {
+      const Vector2d place = Vector2d((i + 0.5) * cell.x(), (j + 0.5) * cell.y()) - extent;
+      if (const double share = outline.share(place); share < 1) volume += thickness.at(place, share) * cell.prod();
+    }
+  return material.density * volume;
+}
+
 bool PlateDesign::heel_toe_alike() const {
   return outline.form != mesh::PlateOutline::Form::polygon &&
          !std::holds_alternative<mesh::PlateThickness::Grid>(thickness.map);
@@ -207,6 +219,7 @@ CondensedPlate PlateFace::condensed(const Vector2d& place, Mirror mirror) const 
   }
   V.conservativeResize(Eigen::NoChange, count);
   const dense::Eigenpairs ritz = dense::eigenpairs(V.transpose() * (stiffness_ * V));
+  if (!ritz.converged) throw solvers::NonConvergence("the modes of the face did not converge");
   CondensedPlate out;
   out.fields = V * ritz.vectors;
   Eigen::MatrixXd grid = on_grid_ * out.fields;

@@ -28,6 +28,8 @@ struct PlateDesign {
   int modes = 8;                ///< of the rim at rest that a blow keeps; the pendulum keeps four times as many
 
   std::vector<std::string> faults() const;
+  /// To a hundredth, without a mesh [kg].
+  double mass() const;
   /// Whether toe and heel are alike by what is stated: the outline is no polygon, the thickness no grid.
   bool heel_toe_alike() const;
 };

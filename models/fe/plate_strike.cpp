@@ -48,6 +48,7 @@ PlateStrike::PlateStrike(std::shared_ptr<const PlateFace> plate, const Head& hea
   M.bottomLeftCorner(n, 6) = M.topRightCorner(6, n).transpose();
   if (!dense::Cholesky(M).positive()) throw std::invalid_argument("the face's inertia is part of the head's");
   const dense::Eigenpairs all = dense::eigenpairs(K, M);
+  if (!all.converged) throw solvers::NonConvergence("the modes of the face and its head did not converge");
   rigid_ = all.vectors.leftCols(6);
   elastic_ = all.vectors.rightCols(n);
   for (Index i = 0; i < n; ++i) omega_.push_back(std::sqrt(all.values[6 + i]));

@@ -9,7 +9,9 @@
 #include "fem/supports.hpp"
 #include "golf/dense.hpp"
 #include "golf/shaft_library.hpp"
+#include "mesh/gauss.hpp"
 #include "models/club/swing.hpp"
+#include "solvers/errors.hpp"
 #include "solvers/linear.hpp"
 
 namespace hosel::models {
@@ -82,9 +84,10 @@ MatrixXd pulled(const std::vector<mesh::LineNode>& line, const Shaft& shaft, dou
     }
     return outboard;
   };
+  const auto rule = mesh::gauss(3);
   for (std::size_t first = 0; first + 2 < line.size(); first += 2) {
     const double a = line[first].arc_length, half = 0.5 * (line[first + 2].arc_length - a);
-    for (const auto& [x, w] : {std::pair{-std::sqrt(0.6), 5.0 / 9}, {0.0, 8.0 / 9}, {std::sqrt(0.6), 5.0 / 9}}) {
+    for (const auto& [x, w] : rule) {
       const Vec3 slope = Vec3(x - 0.5, -2 * x, x + 0.5) / half;
       const double pull = tension(a + half * (1 + x)) * w * half;
       for (int i = 0; i < 3; ++i)
@@ -113,6 +116,7 @@ MatrixXd softening(const Vec3& axis, const MatrixXd& beam_mass, double head, con
 /// Solutions of F M u = u / omega^2 with M = root root', the lowest first; M may be zero at the head.
 MatrixXd shapes(const MatrixXd& F, const MatrixXd& root, int count) {
   const dense::Eigenpairs all = dense::eigenpairs(dense::congruent(F, root));
+  if (!all.converged) throw solvers::NonConvergence("bench: the modes of this shaft did not converge");
   MatrixXd U(F.rows(), count);
   for (int k = 0; k < count; ++k) {
     const auto at = F.rows() - 1 - k;
@@ -335,7 +339,8 @@ BenchModes Bench::modes(const ClubChange& change, int count) const {
     K = (0.5 * (K + K.transpose())).eval();
     all = dense::eigenpairs(B, K);
   }
-  if (!all.converged) throw std::invalid_argument("this club cannot vibrate: its stiffness or mass is not positive");
+  if (!all.converged)
+    throw std::invalid_argument("this club cannot vibrate: it buckles, or its stiffness or mass is not positive");
   const int m = std::min(count, r);
   BenchModes out;
   out.omega.resize(m);

@@ -1,5 +1,6 @@
 #include "models/modal/bench_response.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <complex>
 
@@ -10,7 +11,7 @@ namespace {
 
 using Complex = std::complex<double>;
 
-/// exp(s (t - shift)) at every time; by recursion where the times are equidistant.
+/// exp(s (t - origin)) at every time from the origin on, zero before; by recursion where the times are equidistant.
 std::vector<Complex> exponentials(Complex s, const std::vector<double>& times, double origin) {
   std::vector<Complex> out(times.size());
   if (times.empty()) return out;
@@ -18,16 +19,15 @@ std::vector<Complex> exponentials(Complex s, const std::vector<double>& times, d
   bool even = true;
   for (std::size_t i = 0; i < times.size() && even; ++i)
     even = std::abs(times[i] - times.front() - double(i) * step) < 1e-6 * step;
-  if (even) {
-    const Complex factor = std::exp(s * step);
-    Complex now = std::exp(s * (times.front() - origin));
-    for (std::size_t i = 0; i < times.size(); ++i) {
-      out[i] = now;
-      now *= factor;
-      if (i % 256 == 255) now = std::exp(s * (times.front() - origin + double(i + 1) * step));
-    }
-  } else {
-    for (std::size_t i = 0; i < times.size(); ++i) out[i] = std::exp(s * (times[i] - origin));
+  // Of a fast damped mode the exponential before the origin is no number.
+  std::size_t first = 0;
+  while (first < times.size() && !(times[first] >= origin)) ++first;
+  const Complex factor = std::exp(s * step);
+  Complex now;
+  for (std::size_t i = first; i < times.size(); ++i) {
+    if (!even) out[i] = std::exp(s * (times[i] - origin));
+    else if ((i - first) % 256 == 0) out[i] = now = std::exp(s * (times.front() - origin + double(i) * step));
+    else out[i] = now *= factor;
   }
   return out;
 }
@@ -65,15 +65,20 @@ BenchResponse response(const BenchModes& modes, const BenchStart& start, const B
   load << start.force, start.moment;
 
   if (start.kind == Start::unknown) {
-    // Modes that the sampling can show; their start is fitted.
+    // Modes that the sampling can show; their start is fitted. They rang before the record: from the earliest time that
+    // a reading shows.
+    double earliest = record.times.front();
+    for (const BenchReading& r : readings) earliest = std::min(earliest, record.times.front() - r.delay);
     const double nyquist = kPi * double(n - 1) / (record.times.back() - record.times.front() + 1e-300);
     for (std::ptrdiff_t k = 0; k < modes_count && k < 8 && modes.omega[k] < 0.9 * nyquist; ++k) {
       const Complex s = pole(modes.omega[k], modes.ratio[k]);
       Eigen::MatrixXd cosine(n, m), sine(n, m);
-      const std::vector<Complex> e = exponentials(s, record.times, record.times.front());
+      std::vector<Complex> e;  // readings of one delay share it
       for (std::ptrdiff_t c = 0; c < m; ++c) {
         const BenchReading& r = readings[std::size_t(c)];
-        const Complex factor = modes.sensors(c, k) * power(s, r.order) * std::exp(-s * r.delay);
+        if (c == 0 || r.delay != readings[std::size_t(c - 1)].delay)
+          e = exponentials(s, record.times, std::min(record.times.front(), earliest + r.delay));
+        const Complex factor = modes.sensors(c, k) * power(s, r.order);
         for (std::ptrdiff_t i = 0; i < n; ++i) {
           const Complex y = factor * e[std::size_t(i)];
           cosine(i, c) = y.real();
@@ -94,13 +99,14 @@ BenchResponse response(const BenchModes& modes, const BenchStart& start, const B
       const double held = push / (modes.omega[k] * modes.omega[k]);
       const Complex amplitude = start.kind == Start::release ? held * Complex(1, s.real() / s.imag())
                                                              : push / s.imag() * Complex(0, -1);
-      const std::vector<Complex> e = exponentials(s, record.times, start.at);
+      std::vector<Complex> e;
       for (std::ptrdiff_t c = 0; c < m; ++c) {
         const auto [order, delay] = readings[std::size_t(c)];
-        const double before = start.kind == Start::release && order == 0 ? held : 0;
-        const Complex factor = amplitude * power(s, order) * std::exp(-s * delay);
+        const double before = start.kind == Start::release && order == 0 ? held : 0, origin = start.at + delay;
+        if (c == 0 || delay != readings[std::size_t(c - 1)].delay) e = exponentials(s, record.times, origin);
+        const Complex factor = amplitude * power(s, order);
         for (std::ptrdiff_t i = 0; i < n; ++i) {
-          const bool moving = record.times[std::size_t(i)] - delay >= start.at;
+          const bool moving = record.times[std::size_t(i)] >= origin;
           out.value(i, c) += modes.sensors(c, k) * (moving ? (factor * e[std::size_t(i)]).real() : before);
         }
       }

@@ -7,6 +7,7 @@
 
 #include "golf/dense.hpp"
 #include "golf/units.hpp"
+#include "solvers/errors.hpp"
 
 namespace hosel::models {
 namespace {
@@ -84,6 +85,8 @@ Condensed condense(const MatrixXd& M, const MatrixXd& K, const std::vector<int>&
   out.stiffness = pick(K, tip, tip) + Kib.transpose() * S;
   out.mass = pick(M, tip, tip) + Mib.transpose() * S + S.transpose() * Mib + dense::congruent(Mii, S);
   const dense::Eigenpairs modes = dense::eigenpairs(Kii, Mii);
+  if (!modes.converged)
+    throw solvers::NonConvergence("shaft-coupled: the shaft has no modes: its mass is not positive everywhere");
   int kept = 0;
   while (kept < inner && modes.values[kept] < std::pow(2 * kPi * highest, 2)) ++kept;
   const MatrixXd Phi = modes.vectors.leftCols(kept);

@@ -118,14 +118,14 @@ TEST(SolidStatics, PatchTest) {
                                                 .load_steps = 4});
       const double size = exact.q.lpNorm<Eigen::Infinity>();
       ASSERT_GT(size, 5e-4);
-      EXPECT_LT((found.state.q - exact.q).lpNorm<Eigen::Infinity>(), 1e-11 * size);
+      EXPECT_LT((found.q - exact.q).lpNorm<Eigen::Infinity>(), 1e-11 * size);
       // One stress everywhere.
       PointResponse point;
       const Mat3 F = Mat3::Identity() + A;
       if (law.elastic.corotated()) continue;  // its frame is the patch's own mean rotation
       evaluate(law, F, Mat3::Identity(), 0, {}, false, point);
       const Sym sigma = to_sym(point.stress * F.transpose() / F.determinant());
-      for (const Sym& s : solid.cauchy_at_nodes(found.state, {angles.theta[0], angles.theta[3], 0.4, -2.0}))
+      for (const Sym& s : solid.cauchy_at_nodes(found, {angles.theta[0], angles.theta[3], 0.4, -2.0}))
         EXPECT_LT((s - sigma).norm(), 1e-8 * sigma.norm());
     }
   }
@@ -201,7 +201,7 @@ TEST(SolidStatics, PressurisedThickSphere) {
     const auto found = solvers::solve_static(
         system, system.dof_map.rest(),
         {.newton = {.residual_relative = 1e-10, .increment_vector = 1e-10, .increment_rotation = 1}});
-    const auto u = solid.displacement_fields(found.state);
+    const auto u = solid.displacement_fields(found);
     for (std::size_t i = 0; i < solid.mesh().nodes.size(); ++i) {
       const Eigen::Vector2d& x = solid.mesh().nodes[i];
       const double radial = u.row(static_cast<Index>(i)).dot(x.normalized());
@@ -211,7 +211,7 @@ TEST(SolidStatics, PressurisedThickSphere) {
         EXPECT_NEAR(radial, row.outside, 5e-3 * row.outside) << row.nu;
       }
     }
-    const auto around = solid.cauchy_at_nodes(found.state, {0.0, 2.0});
+    const auto around = solid.cauchy_at_nodes(found, {0.0, 2.0});
     const Sym &s = around[2 * static_cast<std::size_t>(node)], &aside = around[2 * static_cast<std::size_t>(node) + 1];
     EXPECT_NEAR(von_mises(aside), von_mises(s), 1e-9 * von_mises(s)) << "the same all around";
     EXPECT_NEAR(s[2], 172189.891414, 0.01 * 172190) << row.nu;  // hoop stress outside

@@ -89,6 +89,10 @@ TEST(Dense, Eigenpairs) {
   near(A * both.vectors, B * both.vectors * both.values.asDiagonal());
   near(dense::congruent(B, both.vectors), MatrixXd::Identity(4, 4));
   near(dense::congruent(A, both.vectors), both.values.asDiagonal());
+  const dense::Eigenpairs none = dense::eigenpairs(B, A);  // A has a negative eigenvalue
+  EXPECT_FALSE(none.converged);
+  EXPECT_TRUE(none.values.array().isNaN().all());
+  EXPECT_TRUE(none.vectors.array().isNaN().all());
 }
 
 }  // namespace

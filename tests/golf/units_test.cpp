@@ -57,11 +57,16 @@ const std::map<std::string, double> kBySi = {{"m", 1},
                                              {"J", 1},
                                              {"m2", 1},
                                              {"mm2", 1e-3 * 1e-3},
-                                             {"pct", 1 / 100.0}};
+                                             {"pct", 1 / 100.0},
+                                             {"in", 25.4 / 1000},
+                                             {"ft", 12 * 25.4 / 1000},
+                                             {"lb", 453.59237 / 1000},
+                                             {"oz", 453.59237 / 16 / 1000},
+                                             {"lbf", 453.59237 / 1000 * 9.80665}};
 
 TEST(Units, AreWhatTheyAreDefinedToBe) {
   std::set<std::string> seen;
-  for (const Unit& u : units()) {
+  for (const Unit& u : all_units()) {
     const std::string suffix(u.suffix);
     EXPECT_TRUE(seen.insert(suffix).second) << suffix << " stands twice";
     ASSERT_TRUE(kBySi.contains(suffix)) << suffix << " has no value here";
@@ -73,7 +78,7 @@ TEST(Units, AreWhatTheyAreDefinedToBe) {
 
 TEST(Units, TheLongestSuffixOfANameIsItsUnit) {
   // Every suffix ends a name, though some end in others (rad_per_s in s, N_m_per_rad in rad).
-  for (const Unit& u : units()) {
+  for (const Unit& u : all_units()) {
     const SplitName split = split_unit("some_name_" + std::string(u.suffix));
     ASSERT_TRUE(split.unit) << u.suffix;
     EXPECT_EQ(split.unit->suffix, u.suffix);

@@ -113,7 +113,7 @@ TEST(Meridian, AnyAllowedMeshIsOne) {
                       .pole = between(0.2, 1),
                       .skin = between(0.2, 1),
                       .core = between(0.2, 0.6)};
-    if (k % 3) o.far = between(1, 3);
+    if (k % 3) o.far = between(2 - o.pole, 3);
     o.both_poles = k % 3 == 2;
     std::vector<double> radii = {0.0213};
     if (k % 2) radii.insert(radii.begin(), between(0.012, 0.02));
@@ -164,6 +164,8 @@ TEST(Meridian, ThePoleIsAsFineAsAsked) {
   // The mapping's slope at the pole; half an edge away it has changed by the edge's share of the quarter circle.
   EXPECT_NEAR(first_edge({.sector = 8, .pole = 0.5}) / even, 0.5, 0.01);
   EXPECT_NEAR(first_edge({.sector = 8, .pole = 0.25, .far = 2.0}) / even, 0.25, 0.04);
+  // The least that is allowed: sizes grow linearly with the angle, in the first edge by 0.75 / 32.
+  EXPECT_NEAR(first_edge({.sector = 8, .pole = 0.25, .far = 1.75}) / even, 0.25, 0.04);
 }
 
 TEST(Meridian, WhatMakesNoMeshIsRefused) {
@@ -177,6 +179,8 @@ TEST(Meridian, WhatMakesNoMeshIsRefused) {
                                    {.pole = 1.5},
                                    {.far = 0.5},
                                    {.far = NAN},
+                                   {.pole = 0.5, .far = 1.0},
+                                   {.pole = 0.5, .far = 1.49},
                                    {.both_poles = true},
                                    {.pole = 1, .far = 2.0},
                                    {.skin = 0},

@@ -92,9 +92,7 @@ TEST(FreeSpin, CentrifugalEnergyAndAngularMomentum) {
         {.rho_inf = 0.8,
          .newton = {.residual_relative = 1e-10, .increment_vector = 1e-12, .increment_rotation = 1},
          .step_max = step,
-         .step_min = step / 8,
-         .error_vector = INFINITY,
-         .error_rotation = INFINITY},
+         .step_min = step / 8},
         spin.state);
     double largest = 0, least = INFINITY;
     while (solver.time() < 1e-3 * (1 - 1e-9)) {

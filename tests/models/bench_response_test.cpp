@@ -127,6 +127,49 @@ TEST(BenchResponse, DrivenByClampAndForceAsStepByStep) {
   }
 }
 
+/// A mode that dies within a sample, released or struck long after the record's start, against its closed form: its
+/// exponential before that is beyond every number.
+TEST(BenchResponse, AFastModeStaysFiniteBeforeALateStart) {
+  constexpr double omega = 22e3, zeta = 0.5, at = 0.1, delay = 0.07;
+  const double decay = zeta * omega, rate = omega * std::sqrt(1 - zeta * zeta);
+  ASSERT_GT(decay * delay, 710);  // exp() overflows
+  BenchModes m;
+  m.omega = Eigen::VectorXd::Constant(1, omega);
+  m.ratio = Eigen::VectorXd::Constant(1, zeta);
+  m.sensors = Eigen::MatrixXd::Ones(2, 1);
+  m.tip = Eigen::MatrixXd::Ones(6, 1);
+  m.base = Eigen::MatrixXd::Zero(3, 1);
+  for (const bool even : {true, false}) {
+    BenchRecord record;
+    for (int i = 0; i < 40000; ++i) record.times.push_back(5e-6 * i + (even ? 0 : 1e-6 * (i % 2)));
+    for (const Start kind : {Start::release, Start::impulse}) {
+      const BenchStart start{.kind = kind, .at = at, .force = Vec3(2, 0, 0)};
+      const BenchResponse found = response(m, start, record, {{0, 0}, {0, delay}});
+      const double held = 2 / (omega * omega), size = kind == Start::release ? held : 2 / omega;
+      double moved = 0;
+      for (Eigen::Index c = 0; c < 2; ++c)
+        for (Eigen::Index i = 0; i < found.value.rows(); ++i) {
+          const double t = record.times[std::size_t(i)] - at - (c == 1 ? delay : 0), e = std::exp(-decay * t);
+          if (std::abs(t) < 1e-9) continue;  // either side of the jump
+          const double wanted = kind == Start::impulse ? (t < 0 ? 0 : 2 / rate * e * std::sin(rate * t))
+                                : t < 0                ? held
+                                        : held * e * (std::cos(rate * t) + decay / rate * std::sin(rate * t));
+          // 256 products of the recursion, and phases up to 1e3 that times of 0.1 s give to 1e-16 of them.
+          ASSERT_NEAR(found.value(i, c), wanted, 1e-10 * size) << c << ' ' << i;
+          if (t > 0) moved = std::max(moved, std::abs(wanted));
+        }
+      EXPECT_GT(moved, 0.5 * size);
+    }
+    // Where the start is unknown it rang before, and a delayed reading shows that.
+    const BenchResponse unknown = response(m, {}, record, {{0, 0}, {0, delay}});
+    ASSERT_EQ(unknown.unknown.size(), 2U);
+    for (const Eigen::MatrixXd& u : unknown.unknown) {
+      EXPECT_TRUE(u.allFinite());
+      EXPECT_GT(u.col(1).cwiseAbs().maxCoeff(), 0.4);  // the sine's; the cosine's is 1
+    }
+  }
+}
+
 /// Each mode that the sampling shows adds two unknowns, which a free motion is a sum of.
 TEST(BenchResponse, AnUnknownStartIsASumOfItsUnknowns) {
   const BenchModes m = two_modes();

@@ -155,6 +155,10 @@ TEST(Bench, GravityAndTurningStiffenAsThePendulumOnASpring) {
   EXPECT_NEAR(first({}, 0), still, 1e-3 * still);
   EXPECT_NEAR(first({.gravity = Vec3(0, 0, -kGravity)}, 0) - first({}, 0), kGravity, 0.01 * kGravity);
   EXPECT_NEAR(first({.gravity = Vec3(0, 0, kGravity)}, 0) - first({}, 0), -kGravity, 0.01 * kGravity);
+  // Standing on a clamp softer than the weight of the head times its height, 2 N m, it falls over.
+  const ClubChange soft{.clamp = Vec3(0, 1 / 1.5, 0)};
+  EXPECT_THROW(Bench(club, true, {.gravity = Vec3(0, 0, kGravity)}, {}).modes(soft), std::invalid_argument);
+  EXPECT_GT(Bench(club, true, {.gravity = Vec3(0, 0, -kGravity)}, {}).modes(soft).omega[0], 0);
   // About YG the lead direction lies in the plane of turning: rate^2 hub / L. About XG it does not: rate^2 (hub + L) /
   // L.
   const BenchOptions in_plane{.rotation_rate = rate, .rotation_axis = Vec3::UnitY(), .hub = hub};

@@ -64,12 +64,12 @@ class Squeeze {
                                                          .increment_vector = 1e-5 * approach,
                                                          .increment_rotation = 1,
                                                          .max_iterations = 60}});
-    solid->commit(found.state);
-    q_ = found.state.q;
+    solid->commit(found);
+    q_ = found.q;
     history_.clear();
     solid->save(history_);
-    points_ = plate->points(found.state);
-    return plate->report(found.state).normal_force;
+    points_ = plate->points(found);
+    return plate->report(found).normal_force;
   }
   /// Of the plate that the last call pressed last.
   const std::vector<fem::ContactPoint>& points() const { return points_; }

@@ -67,9 +67,7 @@ struct Flight {
                                                  .increment_vector = 1e-10,
                                                  .increment_rotation = 1e-10},
                                       .step_max = step,
-                                      .step_min = step / 64,
-                                      .error_vector = INFINITY,
-                                      .error_rotation = INFINITY},
+                                      .step_min = step / 64},
                                      state);
     while (scheme.time() < end * (1 - 1e-12)) scheme.advance(end);
     state = scheme.state();

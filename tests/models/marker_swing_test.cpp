@@ -117,6 +117,8 @@ TEST(MarkerSwing, ItsErrorIsWhatTheShaftDidNotDo) {
   ASSERT_GT(rigid, 0.01);
   EXPECT_NEAR(rigid, std::sqrt(square / n), 1e-4);  // the motion is a spline of the clamp's poses
   EXPECT_LT(marker_error(swing, motion, samples, 0.3, 0.7), 1e-4);
+  // One sample, of an undeflected club, is a rigid one.
+  EXPECT_DOUBLE_EQ(marker_error(swing, motion, {SwingSample{}}, 0.3, 0.7), rigid);
   EXPECT_THROW(marker_error(swing, motion, samples, 2, 3), std::invalid_argument);
 }
 

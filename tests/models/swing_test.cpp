@@ -4,8 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <cmath>
+#include <stdexcept>
 
 #include "fem/modal_damping.hpp"
+#include "models/club/changed_swing.hpp"
 #include "solvers/modes.hpp"
 #include "tests/support/swing_motion.hpp"
 #include "tests/support/term_checks.hpp"
@@ -58,6 +61,20 @@ TEST(Swing, LeadAndDroopConverge) {
   const Delivery d = delivery_of(fine.back().head);
   EXPECT_GT(d.club_speed, 45);
   EXPECT_LT(d.club_speed, 55);
+}
+
+/// In the club's own axes the tangent hardly changes while it turns over the player's head.
+TEST(Swing, OneTangentServesManySteps) {
+  Swing s(driver_club(), {.elements = 10}, {.motion = motion()});
+  std::vector<Eigen::Quaterniond> attitudes;
+  s.run(s.start(-1.1, s.equilibrium(-1.1)), 0, [&](const SwingSample& x) { attitudes.push_back(x.grip.rotation); });
+  double turned = 0;
+  for (std::size_t i = 1; i < attitudes.size(); ++i) turned += attitudes[i - 1].angularDistance(attitudes[i]);
+  ASSERT_GT(turned, kPi);
+  ASSERT_EQ(s.counts().rejected, 0);
+  EXPECT_GT(s.counts().steps, 1000);
+  // Fixed factors would diverge from a few hundredths of a radian on: one step of the downswing.
+  EXPECT_LT(s.counts().factorisations, s.counts().steps / 5);
 }
 
 TEST(Swing, EquilibriumByNewtonKinsolAndAHold) {
@@ -125,6 +142,44 @@ TEST(Swing, WhatTheShaftCarriesAtTheGripIsTheHandsWrench) {
 }
 
 /// Springs that hardly give hold the club with the wrench of the motion that they follow.
+/// A hosel that yields is a joint of springs: it would take the place of the one that is declared.
+TEST(Swing, AYieldingHoselNeedsARigidJoint) {
+  const ClubChange yielding{.hosel = Vec3::Constant(1e-3)};
+  const auto lead = [&](HeadJoint::Kind kind, const ClubChange& c) {
+    SwingOptions o{.elements = 4};
+    o.joint.kind = kind;
+    o.joint.stiffness = {.translation = Vec3::Constant(1e7), .rotation = Vec3::Constant(1e3)};
+    return changed_swing(driver_club(), o, grip(), c, -0.35, -0.3).back().lead;
+  };
+  EXPECT_NE(lead(HeadJoint::Kind::rigid, yielding), lead(HeadJoint::Kind::rigid, {}));
+  for (const auto kind : {HeadJoint::Kind::hinge, HeadJoint::Kind::spring, HeadJoint::Kind::none})
+    EXPECT_THROW(lead(kind, yielding), std::invalid_argument);
+  EXPECT_TRUE(std::isfinite(lead(HeadJoint::Kind::spring, {})));
+}
+
+/// An equilibrium that fails lets go of the grip: the swing after it moves as the one before.
+TEST(Swing, AFailedEquilibriumHoldsNothing) {
+  bool broken = false;
+  Swing tried(driver_club(), {.elements = 4}, {.motion = [&](double t) {
+                if (broken) throw std::runtime_error("no motion");
+                return grip().at(t);
+              }});
+  const fem::State from = tried.start(-0.3, tried.equilibrium(-0.3));
+  const auto moved = [&] {
+    Vec3 at;
+    tried.run(from, -0.29, [&](const SwingSample& s) { at = s.grip.position; });
+    return at;
+  };
+  const Vec3 before = moved();
+  ASSERT_GT((before - grip().at(-0.3).position).norm(), 1e-3);
+  for (const bool by_holding : {false, true}) {
+    broken = true;
+    EXPECT_THROW(by_holding ? tried.hold(-0.3, 0.01) : tried.equilibrium(-0.3), std::runtime_error);
+    broken = false;
+    EXPECT_EQ(moved(), before);
+  }
+}
+
 TEST(Swing, StiffHandsHoldWithThePrescribedWrench) {
   const SwingOptions options{.elements = 10, .step = 5e-4};
   const double begin = -0.3;

@@ -79,7 +79,6 @@ Outcome finite_elements(const FaceCompliance& face, int steps) {
   options.rho_inf = 0.8;
   options.step_max = step;
   options.step_min = step / 64;
-  options.error_vector = options.error_rotation = INFINITY;
   solvers::GeneralizedAlpha solver(system, options, initial);
   Outcome out;
   double force = 0;

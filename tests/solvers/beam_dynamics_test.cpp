@@ -22,9 +22,7 @@ solvers::GeneralizedAlphaOptions fixed(double rho, double h) {
                      .increment_vector = 1e-7,
                      .increment_rotation = 1e-7},
           .step_max = h,
-          .step_min = h / 64,
-          .error_vector = kInf,
-          .error_rotation = kInf};
+          .step_min = h / 64};
 }
 
 void run_to(GeneralizedAlpha& scheme, double t) {
@@ -336,7 +334,7 @@ std::vector<double> flap_modes(const Rotor& c) {
                        .acceleration = {-c.eta * c.eta * c.hub, 0, 0},
                        .angular_velocity = {0, 0, c.eta}};
     }));
-    spun = solvers::solve_static(held.system, b.rest, {.newton = tight(), .load_steps = 1}).state;
+    spun = solvers::solve_static(held.system, b.rest, {.newton = tight(), .load_steps = 1});
     held.system.prescribed.clear();
   }
   b.system.prescribed.push_back(std::make_unique<Flap>(*b.beam));

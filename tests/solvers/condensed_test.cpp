@@ -9,6 +9,9 @@
 #include "solvers/contact_newton.hpp"
 #include "tests/support/term_checks.hpp"
 
+extern "C" void omp_set_max_active_levels(int) __attribute__((weak));
+extern "C" int omp_get_max_active_levels(void) __attribute__((weak));
+
 namespace hosel::solvers {
 namespace {
 
@@ -48,6 +51,25 @@ TEST(Condensed, SolvesWhatItFactorised) {
       EXPECT_LT(((split ? blocks : whole) * x - right).norm(), 2e-6 * right.norm());
       EXPECT_GT(((split ? whole : blocks) * x - right).norm(), 1e-2 * right.norm());
     }
+}
+
+/// CHOLMOD's threads are switched off while it factorises; those of whoever calls are as they were.
+TEST(Condensed, LeavesTheThreadsOfItsHostAlone) {
+  if (!omp_set_max_active_levels || !omp_get_max_active_levels) GTEST_SKIP() << "CHOLMOD without OpenMP";
+  const fem::Solid rubber{
+      .elastic = fem::Hyperelastic::neo_hooke(fem::Lame::of(60e6, 0.45)), .branches = {}, .density = 1129};
+  fem::System system;
+  system.terms.push_back(std::make_unique<fem::HarmonicSolid>(
+      system.dof_map, mesh::sphere_meridian({0.02}, {.sector = 1, .rings = 1, .pole = .5, .skin = .5, .core = .4}),
+      fem::cartesian_basis(1, 1), fem::SolidQuadrature{fem::full_circle(8), 2}, std::vector{rubber}, fem::Placement{}));
+  SparseTangent tangent(system);
+  tangent.assemble(system, system.dof_map.rest(), {1, 0, 1e9});
+  const int before = omp_get_max_active_levels();
+  omp_set_max_active_levels(3);
+  CondensedFactorisation factors;
+  EXPECT_TRUE(factors.factorise(tangent, {}, {}));
+  EXPECT_EQ(omp_get_max_active_levels(), 3);
+  omp_set_max_active_levels(before);
 }
 
 }  // namespace

@@ -147,7 +147,7 @@ inline Pressed press(const PressedSphere& o) {
                                                    .max_iterations = 60}};
   auto scene = std::make_unique<Scene>();
   fem::State state = build(*scene, 0, nullptr);
-  state = solvers::solve_static(scene->system, state, statics).state;
+  state = solvers::solve_static(scene->system, state, statics);
   if (o.friction > 0) {
     const fem::Vector pressed = state.q;
     scene = std::make_unique<Scene>();
@@ -155,7 +155,7 @@ inline Pressed press(const PressedSphere& o) {
     constexpr int kSteps = 8;
     for (int i = 1; i <= kSteps; ++i) {
       scene->core->value = o.pull * R * i / kSteps;
-      state = solvers::solve_static(scene->system, state, statics).state;
+      state = solvers::solve_static(scene->system, state, statics);
       for (fem::Contact* plate : scene->plates) plate->commit(state);
     }
   }
