@@ -13,11 +13,17 @@ std::vector<Detectable> minimum_detectable(const Problem& problem, const Fit& ba
   // Found nine times in ten: the threshold and 1.3 standard deviations more.
   const double wanted = std::sqrt(rules.gain) + 1.3;
   const Eigen::VectorXd z0 = whitened(problem, Part::select, base.model, base.p);
-  const Eigen::MatrixXd Q = orthonormal(problem.jacobian(Part::select, base.model, base.p));
+  const auto beside_base = [&](const Fit& f) { return orthonormal(problem.jacobian(Part::select, f.model, f.p)); };
+  const Eigen::MatrixXd fitted = beside_base(base);
   // Nothing where the data do not show the form.
   const auto size_of = [&](const Parametrisation* f) -> std::optional<Detectable> {
     const Parameter& par = f->parameters.front();
     Fit probe = beside(base, f);
+    Eigen::MatrixXd Q = fitted;
+    if (f->of_order) {  // a drift is told by what is not the same on every shot
+      const Parametrisation even = placed_otherwise(*f, [](double) { return 1.0; });
+      Q = beside_base(beside(base, &even));
+    }
     const auto signal = [&](double x) {
       probe.p[base.size()] = x;
       Eigen::VectorXd d = whitened(problem, Part::select, probe.model, probe.p);

@@ -132,7 +132,8 @@ std::string without_name(const LoopResult& r) {
   for (const Remainder::Place& p : r.remainder->places)
     s += fmt::format("<tr><td>{}<td>{}<td class='l'>{}<td>{:.0f} %<td>{}<td>{}</tr>",
                      escape_html(post::label(r.channel_names[std::size_t(p.channel)])), number(p.size),
-                     escape_html(post::label(p.along)), 100 * p.share, number(p.largest), number(p.at));
+                     p.share < 0.005 ? "no column: nearly a constant" : escape_html(post::label(p.along)),
+                     100 * p.share, number(p.largest), number(p.at));
   return s + "</table></div>" +
          gloss(
              "What is left of the residual follows the inputs as a smooth function (a Gaussian process) that no effect "
@@ -248,10 +249,12 @@ std::string page(const LoopResult& r, const Shots& table) {
         "it<td>{}<td>{}</tr></table></div>",
         ratio(b.contact, b.contact_freedom), ratio(a.contact, a.contact_freedom), ratio(b.inertia, b.inertia_freedom),
         ratio(a.inertia, a.inertia_freedom));
-    if (r.verdict != Verdict::no_residual && b.contact + b.inertia > double(b.contact_freedom + b.inertia_freedom))
+    if (const int freedom = b.contact_freedom + b.inertia_freedom;
+        freedom > 0 && cdf(complement(boost::math::chi_squared(freedom), b.contact + b.inertia)) < kTold)
       s += fmt::format(
-          "<p>The base model's error is larger than the noise; {:.0f} % of that excess cannot come from the contact "
-          "law.</p>",
+          "<p>The base model's error is larger than the noise. Of that excess {:.0f} % is motion of the head or "
+          "inertia, "
+          "whatever the contact law.</p>",
           100 * b.inertia_share());
   }
 

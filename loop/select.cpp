@@ -67,12 +67,19 @@ Selection select(const Problem& problem, const std::vector<const Parametrisation
   const bool effect = fall(search.singles) > rules.gain;
   s.before =
       problem.structure(search.base, effect ? search.singles.front().fit : search.base, search.directions(), rules);
-  s.structured = s.before.p < rules.gate || s.before.signal > rules.remaining_signal ||
+  // A signal that is none beside the scatter is noise declared too small, unless the inputs foretell that scatter.
+  const auto signals = [&](const StructureMap& map, const Fit& f) {
+    if (!(map.signal > rules.remaining_signal)) return false;
+    if (map.beside > rules.remaining_signal) return true;
+    const std::optional<Remainder> left = problem.remainder(f);
+    return left && left->fall() > rules.gain;
+  };
+  s.structured = s.before.p < rules.gate || signals(s.before, search.base) ||
                  search.threshold_gain() > 2 * rules.further_gain;
   const auto choose = [&](const Fit& f) {
     s.chosen = f;
     s.after = problem.structure(f, f, Eigen::MatrixXd(0, 0), rules);
-    s.clean = !(s.after.p < rules.remaining || s.after.signal > rules.remaining_signal);
+    s.clean = !(s.after.p < rules.remaining || signals(s.after, f));
   };
 
   const std::vector<Candidate>* level = nullptr;

@@ -24,6 +24,7 @@ struct StructureMap {
   std::vector<Finding> findings;  ///< the plainest first
   double p = 1;                   ///< of the largest statistic, corrected
   double signal = 0;              ///< the largest where the noise is declared and not refuted
+  double beside = 0;              ///< the same in units of at least the scatter beside it
 };
 
 }  // namespace hosel::loop

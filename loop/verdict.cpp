@@ -73,7 +73,8 @@ Rival one_function(const Study& study, const std::vector<Mechanism>& found) {
       found, [&](const Mechanism& m) { return m.along == "shot" && !std::ranges::count(m.names, "session-drift"); });
   const bool drift = names.size() == 1 && names.front() == "session-drift" && no_drift != found.end();
   const auto told = [](const Mechanism& m, std::string_view of_it) {
-    return fmt::format("one function of {}, acting through {}{}{}", m.along, m.acts,
+    return fmt::format("{}, acting through {}{}{}",
+                       m.along == "constant" ? "one constant" : fmt::format("one function of {}", m.along), m.acts,
                        m.names.empty() ? "" : fmt::format(" ({})", fmt::join(m.names, " or ")), of_it);
   };
   if (names.empty() && !more)
@@ -186,8 +187,7 @@ Verdict judge(const Study& study, const std::vector<WrongColumn>& columns, const
   for (const Attenuation& a : attenuated(study, told))
     unexplained.push_back(
         {"", a.column,
-         fmt::format("its records lie too far from their mean, as noise or slips in them do ({:.0f} % of "
-                     "their variance); {} says no more",
+         fmt::format("noise or slips in its records ({:.0f} % of their variance) would do the same as {}",
                      100 * a.share, a.effect)});
   if (!unexplained.empty()) return Verdict::unexplained;
   if (auto by_groups = shared_by_groups(study, told)) {

@@ -524,8 +524,9 @@ std::vector<Columns::PartOfRows> Columns::parts() const {
   return parts;
 }
 
-/// A club or a ball that changes there moves the ball speed as a reading that is off from there on does: a face the
-/// same all over, or the more the farther from its centre. Deviance of the best such change, by part; "": of all rows.
+/// A club or a ball that changes there moves a reading as one that is off from there on does: a face the same all over,
+/// or the more the farther from its centre, or another centre of gravity. Deviance of the best such change, by part;
+/// "": of all rows.
 std::map<std::string, double> Columns::by_contact(const Eigen::MatrixXd& z, const Eigen::MatrixXd& W,
                                                   const std::vector<PartOfRows>& parts) const {
   const auto index = [&](Input i) { return std::ranges::find(inputs_, i) - inputs_.begin(); };
@@ -548,8 +549,21 @@ std::map<std::string, double> Columns::by_contact(const Eigen::MatrixXd& z, cons
         changes.push_back({std::move(by), c.largest});
     return changes;
   };
-  const std::vector<Change> of_ball = moving(of_another_ball());
+  const std::vector<Change> of_ball = moving(of_another_ball()), of_head = moving(of_another_head());
   const auto of_side = [&](const PartOfRows::Side& side) {
+    for (const Change& first : of_head) {
+      const Eigen::MatrixXd by = members_only(first.by, side.member);
+      const auto [size, value] = fitted(z, by);
+      if (std::abs(size) > first.largest) continue;
+      rival(side.where, value);
+      const Eigen::MatrixXd beside = z + size * by;
+      for (const Change& second : of_head) {
+        if (&second == &first) continue;
+        if (const auto [more, both] = fitted(beside, members_only(second.by, side.member));
+            std::abs(more) <= second.largest)
+          rival(side.where, both + case_.rules.parameter_cost);
+      }
+    }
     Eigen::MatrixXd left;  // by the first change: another ball differs in both
     for (const Change& c : of_ball) {
       const Eigen::MatrixXd even = members_only(c.by, side.member);

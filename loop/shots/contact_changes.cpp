@@ -62,6 +62,15 @@ std::array<ContactChange, 3> of_another_ball() {
           std::move(inertia)};
 }
 
+std::array<ContactChange, 3> of_another_head() {
+  const auto moved = [](int axis) {
+    ContactChange c = unchanged(0.02);
+    c.form.before = [axis](std::span<const double> p, Shot& s) { s.blow.club.head.cg[axis] += p[0]; };
+    return c;
+  };
+  return {moved(0), moved(1), moved(2)};
+}
+
 std::array<ContactChange, 4> of_one_direction() {
   return {returned_along(1), returned_along(2), transmitted_along(1), transmitted_along(2)};
 }

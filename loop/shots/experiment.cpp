@@ -214,6 +214,9 @@ NextExperiment design(const ShotCase& c, const Problem& problem, const ShotModel
                       const LoopResult& so_far) {
   switch (so_far.verdict) {
     case Verdict::unexplained: {
+      if (!so_far.columns.empty())
+        return {.text = fmt::format("First mend the file or the instrument, then run the loop again: {}",
+                                    so_far.columns.front().text)};
       if (so_far.unexplained.empty()) break;
       const auto l = std::ranges::find_if(so_far.unexplained, [](const Location& x) { return !x.regressor.empty(); });
       if (l == so_far.unexplained.end())
@@ -227,8 +230,8 @@ NextExperiment design(const ShotCase& c, const Problem& problem, const ShotModel
         // What follows something else as well is no zero.
         for (const StructureMap* map : {&so_far.selection.after, &so_far.selection.before})
           for (const Finding& f : map->findings)
-            if (f.channel >= 0 && problem.channel(f.channel).name == l->channel && f.regressor != "constant" &&
-                f.p_adjusted < kTold)
+            if (!l->rival && f.channel >= 0 && problem.channel(f.channel).name == l->channel &&
+                f.regressor != "constant" && f.p_adjusted < kTold)
               return {.text = fmt::format("Change {} on purpose, keep everything else as it is, and repeat each "
                                           "setting: {} is off in the mean, and by how much follows it",
                                           f.regressor, l->channel)};
@@ -238,6 +241,9 @@ NextExperiment design(const ShotCase& c, const Problem& problem, const ShotModel
       if (l->regressor == "shot")
         return {.text = fmt::format("Repeat the first shots of the session at its end, in the same order: {}",
                                     said(" follows the order of the shots"))};
+      if (const Column* reading = c.shots.find(l->regressor); reading && reading->role == Role::output)
+        return {.text = fmt::format("Compare {} with another instrument, shot by shot: {}", l->regressor,
+                                    said(" follows it in a way that no candidate explains"))};
       return {.text = fmt::format("Change {} on purpose, keep everything else as it is, and repeat each setting: {}",
                                   l->regressor, said(" follows it in a way that no candidate explains"))};
     }

@@ -17,6 +17,8 @@ namespace {
 
 /// The loft at which the closed form shows a launch angle.
 double loft_of(Blow blow, double launch_angle) {
+  constexpr double heavy = 1e3;  // kg m^2: of a head that the base does not let turn
+  if (!blow.club.head.inertia.allFinite()) blow.club.head.inertia = heavy * Mat3::Identity();
   double& loft = blow.delivery.dynamic_loft;
   loft = launch_angle;
   for (int k = 0; k < 8; ++k) loft += (launch_angle - closed_form().launch(blow).launch_angle()) / kLaunchPerLoft;

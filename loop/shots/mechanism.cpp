@@ -234,6 +234,12 @@ Eigen::MatrixXd by_noise(const Eigen::MatrixXd& z, const std::vector<Eigen::Matr
   return out;
 }
 
+/// Whether a function hardly varies: what it is called by is its level.
+bool level(const Eigen::VectorXd& g) {
+  constexpr double varies_by = 0.05;  // of its square
+  return (g.array() - g.mean()).square().sum() < varies_by * g.squaredNorm();
+}
+
 bool monotone(const Eigen::VectorXd& g, const std::vector<double>& order) {
   const auto by = rising_order<std::size_t>(order.size(), [&](std::size_t i) { return order[i]; });
   double way = 0, path = 0;
@@ -347,7 +353,9 @@ std::vector<Mechanism> mechanisms(const ShotModel& model, const Shots& shots, co
       t.found = std::move(again);
       deviance = weighed(left + j * t.found.g.asDiagonal(), w);
     }
-    Mechanism m{.acts = every[t.way].acts, .along = functions[t.field].along, .step = functions[t.field].step};
+    Mechanism m{.acts = every[t.way].acts,
+                .along = level(t.found.g) ? "constant" : functions[t.field].along,
+                .step = functions[t.field].step};
     const Eigen::VectorXd moved = (j * t.found.g.asDiagonal()).rowwise().squaredNorm();
     Eigen::Index most = 0;
     moved.maxCoeff(&most);

@@ -305,6 +305,7 @@ bool ShotProblem::screen(const Selection& selection) {
     if (std::ranges::any_of(bare.flags, &RowFlag::cluster)) screening = std::move(bare);
   }
   flags_ = std::move(screening.flags);
+  if (!selection.clean) put_back_together();
   if (held_rows_) std::erase_if(flags_, [&](const RowFlag& f) { return f.shot >= 0 && held_rows_->contains(f.row); });
   widespread_ = std::move(screening.widespread);
   many_ = screening.many;
@@ -536,11 +537,24 @@ std::optional<Location> ShotProblem::two_populations(const Selection& s) const {
                   (best->second[i] ? 1 / count : -1 / (double(rows.size()) - count));
   Eigen::Index most = 0;
   difference.cwiseAbs().maxCoeff(&most);
+  std::string apart = "two balls, players or settings that no column tells apart";
+  constexpr double alike = 0.9;
+  for (const Column& c : case_.shots.columns) {
+    if (c.numeric || c.role == Role::output) continue;
+    const Groups g = groups(c);
+    for (std::size_t k = 0; k < g.name.size(); ++k) {
+      double same = 0;
+      for (std::size_t i = 0; i < rows.size(); ++i)
+        same += (g.of_row[std::size_t(inputs_.row_of[std::size_t(rows[i])])] == int(k)) == bool(best->second[i]);
+      if (std::max(same, double(rows.size()) - same) > alike * double(rows.size()))
+        apart = fmt::format("nearly {} '{}' and the others", c.name, g.name[k]);
+    }
+  }
   return Location{
       channel(int(most)).name, "",
-      fmt::format("a mixture of two populations, {:.0f} % of the shots {:.1f} standard deviations from the others{}: "
-                  "two balls, players or settings that no column tells apart",
-                  100 * best->share, best->apart, by.empty() ? "" : fmt::format(", as {} would move them", by))};
+      fmt::format(
+          "a mixture of two populations, {:.0f} % of the shots {:.1f} standard deviations from the others{}: {}",
+          100 * best->share, best->apart, by.empty() ? "" : fmt::format(", as {} would move them", by), apart)};
 }
 
 /// Where the residual is no structure in any regressor and yet no noise: two populations; a channel whose scatter
@@ -568,6 +582,18 @@ std::vector<Location> ShotProblem::shapes(const Selection& s) const {
   }
   if (!widespread_.empty()) return {told("", widespread_)};
   return {};
+}
+
+/// Where structure remains, rows that are far off together along a column show it: they are no slips, and stay in.
+void ShotProblem::put_back_together() {
+  std::size_t together = 0;
+  std::vector<Line> columns = columns_of(case_.shots, inputs_.row_of, *model_);
+  columns.pop_back();  // an instrument fails for a while
+  const std::vector<RowFlag> single = single_flags();
+  if (!stand_together(single, columns, case_.rules.gate, together)) return;
+  std::erase_if(flags_, [&](const RowFlag& f) {
+    return std::ranges::any_of(single, [&](const RowFlag& s) { return s.row == f.row; });
+  });
 }
 
 std::vector<RowFlag> ShotProblem::single_flags() const {

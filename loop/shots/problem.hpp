@@ -87,6 +87,7 @@ class ShotProblem : public Problem {
   std::optional<Location> two_populations(const Selection& s) const;
   bool in_session() const;
   std::vector<RowFlag> single_flags() const;
+  void put_back_together();
   /// Shots beyond what noise does to one in a thousand.
   struct FarOff {
     int rows = 0, lost = 0, all = 0;  ///< flagged one by one or far off; flagged or where the loss is flat; of so many

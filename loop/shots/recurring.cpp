@@ -31,8 +31,16 @@ std::vector<int> repeats(const Shots& shots, const Column& c, std::size_t lag, d
   return same;
 }
 
+/// Whether rows stand sorted by this column, so that equal values are neighbours.
+bool sorts(const Column& c) {
+  std::vector<double> seen;
+  std::ranges::copy_if(c.value, std::back_inserter(seen), [](double x) { return std::isfinite(x); });
+  return std::ranges::is_sorted(seen) || std::ranges::is_sorted(seen, std::ranges::greater{});
+}
+
 std::vector<int> of_the_row_before(const Shots& shots, const Column& c, double& by_chance) {
   constexpr std::size_t farthest = 6;
+  if (sorts(c)) return {};
   double pairs = 0, others = 0, alike = 0;
   std::vector<int> same = repeats(shots, c, 1, pairs);
   for (std::size_t lag = 2; lag <= farthest; ++lag) alike += double(repeats(shots, c, lag, others).size());

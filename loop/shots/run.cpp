@@ -39,10 +39,22 @@ std::pair<ShotCase, WrongColumn> set_right(const ShotCase& c, const InputOffset&
   return {std::move(right), std::move(told)};
 }
 
+/// A column computed from readings carries their noise, so that their residuals follow it whatever is true.
+ShotCase without_computed(const ShotCase& given, const std::vector<DerivedColumn>& derived) {
+  ShotCase c = given;
+  for (const DerivedColumn& d : derived)
+    for (Column& column : c.shots.columns)
+      if (column.name == d.column && column.role == Role::other &&
+          std::ranges::any_of(d.from, [&](const auto& name) { return c.shots.find(name)->role == Role::output; }))
+        column.role = Role::bookkeeping;
+  return c;
+}
+
 /// `offset`: of a column that was set right; it is told where nothing else remains.
-LoopResult pass(const ShotCase& c, const Columns& columns, const std::vector<DerivedColumn>& derived,
+LoopResult pass(const ShotCase& given, const Columns& columns, const std::vector<DerivedColumn>& derived,
                 const std::optional<std::set<int>>& held_rows, std::optional<Input> doubted = {},
                 const std::optional<WrongColumn>& offset = {}) {
+  const ShotCase c = without_computed(given, derived);
   ShotProblem problem(c, derived, held_rows, doubted);
   LoopResult result(c, c.shots.rows());
   result.derived = derived;

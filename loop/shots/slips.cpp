@@ -27,6 +27,26 @@ double by_chance(const std::vector<double>& place) {
 
 }  // namespace
 
+const Line* stand_together(const std::vector<RowFlag>& flagged, const std::vector<Line>& lines, double gate,
+                           std::size_t& together) {
+  const Line* along = nullptr;
+  double least = gate / double(lines.size());
+  for (const Line& l : lines) {
+    std::vector<int> with;
+    for (int i = 0; i < l.x.size(); ++i)
+      if (std::isfinite(l.x[i])) with.push_back(i);
+    // Equal numbers in the order of their rows.
+    std::ranges::stable_sort(with, {}, [&](int i) { return l.x[i]; });
+    std::vector<double> place;
+    for (std::size_t k = 0; k < with.size(); ++k)
+      if (std::ranges::any_of(flagged, [&](const RowFlag& f) { return f.shot == with[k] && f.column != l.name; }))
+        place.push_back((double(k) + 0.5) / double(with.size()));
+    if (place.size() < 2) continue;
+    if (const double p = by_chance(place); p < least) along = &l, least = p, together = place.size();
+  }
+  return along;
+}
+
 std::optional<Location> no_single_slips(const std::vector<RowFlag>& flagged, const std::vector<ColumnUse>& uses,
                                         const std::vector<Line>& lines, double gate) {
   std::map<std::string, int> of_column;
@@ -42,22 +62,8 @@ std::optional<Location> no_single_slips(const std::vector<RowFlag>& flagged, con
                     fmt::format("{} of {} flagged rows contradict the others in this column, too many for single slips",
                                 most, flagged.size())};
 
-  const Line* along = nullptr;
   std::size_t together = 0;
-  double least = gate / double(lines.size());
-  for (const Line& l : lines) {
-    std::vector<int> with;
-    for (int i = 0; i < l.x.size(); ++i)
-      if (std::isfinite(l.x[i])) with.push_back(i);
-    // Equal numbers in the order of their rows.
-    std::ranges::stable_sort(with, {}, [&](int i) { return l.x[i]; });
-    std::vector<double> place;
-    for (std::size_t k = 0; k < with.size(); ++k)
-      if (std::ranges::any_of(flagged, [&](const RowFlag& f) { return f.shot == with[k] && f.column != l.name; }))
-        place.push_back((double(k) + 0.5) / double(with.size()));
-    if (place.size() < 2) continue;
-    if (const double p = by_chance(place); p < least) along = &l, least = p, together = place.size();
-  }
+  const Line* along = stand_together(flagged, lines, gate, together);
   if (!along) return {};
   return Location{"", along->name,
                   fmt::format("{} flagged rows stand together along it, too closely for single slips", together)};

@@ -376,9 +376,19 @@ StructureMap structure(const Problem& problem, const Whitened& view, const Fit& 
   map.p = (1.0 + double(largest.end() - std::ranges::lower_bound(largest, top - 1e-5))) /
           (1.0 + double(largest.size()));
   std::ranges::stable_sort(map.findings, std::ranges::greater{}, [](const Finding& f) { return std::abs(f.signal); });
-  const auto counts = [&](const Finding& f) { return f.kind != kGain && known(f); };
-  if (const auto first = std::ranges::find_if(map.findings, counts); first != map.findings.end())
-    map.signal = std::abs(first->signal);
+  const auto scatter_beside = [&](const Finding& f) {
+    double sum = 0, values = 0;
+    for (int i = 0; i < n; ++i)
+      for (int c = 0; c < m; ++c)
+        if (const double x = z[std::ptrdiff_t(i) * m + c]; (f.channel < 0 || f.channel == c) && x != 0)
+          sum += weights[i] * x * x, values += weights[i];
+    return std::sqrt(std::max(1.0, (sum - f.signal * f.signal) / std::max(1.0, values - 1)));
+  };
+  for (const Finding& f : map.findings) {
+    if (f.kind == kGain || !known(f)) continue;
+    map.signal = std::max(map.signal, std::abs(f.signal));
+    map.beside = std::max(map.beside, std::abs(f.signal) / scatter_beside(f));
+  }
   return map;
 }
 
