@@ -24,6 +24,10 @@ std::string digest_of(const fs::path& file) {
 
 }  // namespace
 
+std::string not_there(const fs::path& file) {
+  return fmt::format("{} is not there; HOSEL_DATA names the folder of measured files", file.string());
+}
+
 void Inputs::file(const fs::path& file, const std::string& name, const fs::path& copy) {
   static OfFile<std::string> digests;
   const std::string digest = digests.get(file, [&] { return digest_of(file); });
@@ -94,6 +98,14 @@ std::vector<fs::path> Inputs::files() const {
   for (const auto& [file, digest] : digests_)
     if (digest != "none") all.push_back(file);
   return all;
+}
+
+std::vector<fs::path> Inputs::missing() const {
+  const std::lock_guard lock(mutex_);
+  std::vector<fs::path> out;
+  for (const auto& [file, digest] : digests_)
+    if (digest == "none") out.push_back(file);
+  return out;
 }
 
 }  // namespace hosel::app

@@ -12,6 +12,9 @@
 
 namespace hosel::app {
 
+/// "FILE is not there; ...": what SKIPPED says of measured data.
+std::string not_there(const std::filesystem::path& file);
+
 /// Shared by a case file and every case file made of it: whoever reads a case may name files from any thread.
 class Inputs {
  public:
@@ -36,6 +39,8 @@ class Inputs {
   /// Throws InputError where a file is no longer what was read.
   void verify() const;
   std::vector<std::filesystem::path> files() const;
+  /// Files that the case names and that are not there: measured data of another machine.
+  std::vector<std::filesystem::path> missing() const;
   /// Where below OUT copies belong, and of what.
   std::map<std::filesystem::path, std::filesystem::path> copies() const;
 

@@ -101,7 +101,7 @@ std::string range_of(const Declared& d) {
   const Range& r = d.range;
   if (r.min == Range::finite().min && r.max == Range::finite().max && !r.also_infinite) return {};
   std::optional<Unit> unit;
-  const auto all = units();
+  const auto all = all_units();
   if (const auto it = std::ranges::find(all, d.unit, &Unit::suffix); it != all.end()) unit = *it;
   return r.allowed(unit);
 }
@@ -148,7 +148,7 @@ std::string value_of(const AcceptedKey& k) {
   }
   if (type.starts_with("one of ") && std::ranges::count(type, ',') > 7) return "a name (`hosel list`)";
   if (k.ranges.size() > 2 && !k.decided_by.empty()) return type + ", range " + decided(k);
-  if (k.ranges.size() > 1) return fmt::format("{}, {}", type, fmt::join(k.ranges, " or "));
+  if (k.ranges.size() > 1) return fmt::format("{}, {}", type, fmt::join(k.ranges, "; or "));
   const std::string& range = *k.ranges.begin();
   return range.empty() ? type : fmt::format("{}, {}", type, range);
 }

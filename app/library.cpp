@@ -408,6 +408,17 @@ std::string used_beyond(const CaseFile& file, const std::vector<std::string>& ov
   return {};
 }
 
+namespace {
+
+/// Whether finite elements alone answer, with a friction of the case: of a set they would take the friction alone.
+bool needs_no_set(Table root) {
+  auto contact = root.optional_table("contact");
+  if (!contact || !contact->has("face_friction") || !root.has("models")) return false;
+  return std::ranges::all_of(root.texts({"models"}), [](const std::string& m) { return m.starts_with("fe-"); });
+}
+
+}  // namespace
+
 std::optional<NamedContact> named_contact(Table root) {
   if (auto contact = root.optional_table("contact"))
     if (const auto wanted = named_entry(*contact, "name", Shelf::contacts)) return library_contact(*wanted);
@@ -434,6 +445,7 @@ std::optional<NamedContact> named_contact(Table root) {
     by_loft.face = face_name(root);
     if (const NamedContact* s = by_loft.at(blow)) return *s;
   }
+  if (needs_no_set(root)) return {};
   ball->fail("model", fmt::format("'{}' has several sets of parameters and {}: say which by `reduced` ({})", *model,
                                   loft, fmt::join(names, ", ")));
 }

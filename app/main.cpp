@@ -74,6 +74,8 @@ void check(const Arguments& a) {
     for (std::string line; std::getline(lines, line);) fmt::print("# {}\n", line);
   }
   for (const std::string& doubt : file.inputs()->doubts()) fmt::print("# in doubt: {}\n", doubt);
+  for (const std::filesystem::path& data : file.inputs()->missing())
+    fmt::print("# a run has SKIPPED what needs it: {}\n", app::not_there(data));
 }
 
 void keys(const Arguments& a) {

@@ -343,7 +343,7 @@ void Output::write_summary(const nlohmann::json& summary) const {
 }
 
 void Output::skip(const fs::path& missing) {
-  say(fmt::format("SKIPPED: {} is not there; HOSEL_DATA names the folder of measured files", missing.string()));
+  say(fmt::format("SKIPPED: {}", not_there(missing)));
   state_->units_matter = true;  // nothing is shown, in whatever units
   write_summary({{"skipped", missing.string()}});
 }

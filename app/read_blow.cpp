@@ -142,10 +142,11 @@ ContactLaw read_contact_law(Table table, const std::optional<ContactLaw>& standa
                    {-1, 1}, standard_of(standard, &ContactLaw::tangential_restitution));
   law.friction = table.number({"friction", "Coulomb limit of the impulse; inf sticks"}, {0, limits::inf},
                               standard_of(standard, &ContactLaw::friction));
-  law.normal_force_offset =
-      table.number({"normal_force_offset",
-                    "the normal impulse passes this far above the ball's centre, over its radius; positive adds spin"},
-                   {-0.5, 0.5}, standard_of(standard, &ContactLaw::normal_force_offset));
+  law.normal_force_offset = table.number(
+      {"normal_force_offset",
+       "the normal impulse passes this far below the ball's centre, down the face along the slip, over its radius; "
+       "positive adds spin"},
+      {-0.5, 0.5}, standard_of(standard, &ContactLaw::normal_force_offset));
   return law;
 }
 

@@ -291,6 +291,11 @@ models::Options read_options(Table root, const std::vector<std::string>& models,
       options.shaft_beam.hinged = joint.hinge_across();
     }
   if (fe || there) options.fe = read_fe(root, blow.ball, fe, blow.contact.patch, options.plate);
+  if (const double head = blow.club.head.mass; options.plate && std::isfinite(head))
+    if (const double plate = options.plate->design().mass(); !(plate < head))
+      root.table("face").table("plate").fail(
+          "thickness",
+          fmt::format("the face weighs {:.3g} g and is part of a head of {:g} g", 1e3 * plate, 1e3 * head));
   return options;
 }
 

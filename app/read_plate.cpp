@@ -125,7 +125,7 @@ PlateThickness read_thickness(Table t, std::string& file) {
     file = sheet.file;
     out.map = read_grid(sheet);
   }
-  if (const auto faults = out.faults(); !faults.empty()) t.fail("", faults.front());
+  if (const auto faults = out.faults(); !faults.empty()) t.fail(map == "rings" ? "share" : map, faults.front());
   return out;
 }
 
@@ -188,7 +188,9 @@ models::PlateDesign read_plate(Table t) {
                                  2, 40, d.mesh.core));
   d.mesh.rings = int(mesh.integer({"rings", "rings of elements around the core block"}, 1, 40, d.mesh.rings));
   d.modes = int(mesh.integer({"modes", "of the plate that a blow keeps beside four static shapes"}, 1, 27, d.modes));
-  if (const auto faults = d.faults(); !faults.empty()) t.fail("", faults.front());
+  for (const auto& [key, faults] :
+       {std::pair{"outline", d.outline.faults()}, {"rim", d.rim.faults()}, {"mesh", d.mesh.faults()}, {"", d.faults()}})
+    if (!faults.empty()) t.fail(key, faults.front());
   try {
     for (const auto& node : mesh::plate_mesh(d.outline, d.mesh).nodes)
       d.thickness.at(node, std::min(1.0, d.outline.share(node)));
@@ -202,6 +204,7 @@ models::PlateDesign read_plate(Table t) {
 std::optional<models::PlateDesign> read_optional_plate(Table root) {
   auto face = root.optional_table("face");
   if (!face || !face->has("plate")) return {};
+  if (face->has("name")) face->fail("name", "either a face of the library or [face.plate]");
   return read_plate(face->table("plate"));
 }
 

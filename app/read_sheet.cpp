@@ -52,7 +52,7 @@ std::vector<double> column(const post::Sheet& sheet, std::string_view stem, Dime
     return out;
   }
   std::string there, wanted;
-  for (const Unit& u : units())
+  for (const Unit& u : all_units())
     if (unit_needed && u.dimension == dimension)
       wanted += fmt::format("{}{}_{}", wanted.empty() ? " with a unit (" : ", ", stem, u.suffix);
   if (!wanted.empty()) wanted += ")";

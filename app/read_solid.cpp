@@ -1,5 +1,7 @@
 #include "app/read_solid.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -81,7 +83,7 @@ std::span<const NamedLaw> solid_laws() { return kLaws; }
 namespace {
 
 /// Turns the solids into what they are at the temperature that `table` states, where it does.
-void read_temperature(Table& table, std::span<fem::Solid* const> solids) {
+void read_temperature(Table& table, std::span<fem::Solid* const> solids, bool of_ball) {
   auto t = table.optional_table("temperature");
   if (!t) return;
   constexpr double zero = 273.15;
@@ -94,6 +96,15 @@ void read_temperature(Table& table, std::span<fem::Solid* const> solids) {
                      {0, 50}, law.c1);
   law.c2 = t->number({"wlf_c2_K", "the other one [K]"}, {60, 1000}, law.c2);
   if (const auto faults = law.faults(now); !faults.empty()) t->fail("now_C", faults.front());
+  constexpr double far = 5;  // [K]
+  const auto one_time = [](const fem::Solid* s) { return s->branches.size() == 1; };
+  if (of_ball && std::abs(now - law.measured) > far && std::ranges::any_of(solids, one_time))
+    t->doubt(fmt::format(
+        "a layer with one Maxwell branch loses energy at one frequency, which {:g} K move: whether such a ball is "
+        "faster "
+        "or slower is no prediction (measured balls are slower when they are colder); branches over two decades of "
+        "time are wanted",
+        now - law.measured));
   for (fem::Solid* solid : solids) *solid = fem::at_temperature(std::move(*solid), law, now);
 }
 
@@ -114,7 +125,7 @@ fem::Solid read_solid(Table table) {
   for (std::size_t i = 0; i < moduli.size(); ++i) solid.branches.push_back({moduli[i], times[i]});
   if (const auto faults = solid.faults(); !faults.empty()) table.fail("law", faults.front());
   fem::Solid* const one[] = {&solid};
-  read_temperature(table, one);
+  read_temperature(table, one, false);
   return solid;
 }
 
@@ -165,7 +176,7 @@ models::FeBall read_fe_ball(Table table, const models::FeBall& standard) {
   }
   std::vector<fem::Solid*> rubbers;
   for (models::BallLayer& layer : ball.layers) rubbers.push_back(&layer.material);
-  read_temperature(table, rubbers);
+  read_temperature(table, rubbers, true);
   return ball;
 }
 

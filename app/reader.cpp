@@ -81,7 +81,7 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 }
 
 const Unit* find_unit(std::string_view suffix) {
-  const auto all = units();
+  const auto all = all_units();
   const auto it = std::ranges::find(all, suffix, &Unit::suffix);
   return it == all.end() ? nullptr : &*it;
 }
@@ -111,7 +111,7 @@ std::string with_article(Dimension dimension) {
 
 std::string offered(std::string_view stem, Dimension dimension) {
   std::string all;
-  for (const Unit& u : units())
+  for (const Unit& u : all_units())
     if (u.dimension == dimension) all += fmt::format("{}{}_{}", all.empty() ? "" : ", ", stem, u.suffix);
   return all;
 }
@@ -182,7 +182,7 @@ std::string place(const detail::Document& d, const toml::node& node) {
 Table::Table(std::shared_ptr<detail::Document> document, void* node, std::string path, std::string shown)
     : document_(std::move(document)), node_(node), path_(std::move(path)), shown_(std::move(shown)) {}
 
-void Table::fail(std::string_view key, std::string_view what) const {
+std::string Table::place_of(std::string_view key) const {
   const toml::table& t = as_table(node_);
   const toml::node* node = key.empty() ? nullptr : t.get(key);
   std::string name = key.empty() ? path_ : dotted(path_, key);
@@ -190,8 +190,11 @@ void Table::fail(std::string_view key, std::string_view what) const {
     for (auto&& [stated, value] : t)  // a quantity, by its stem: as the case has it, with its unit
       if (const SplitName split = split_unit(stated.str()); split.unit && split.stem == key)
         node = &value, name = dotted(path_, stated.str());
-  throw InputError(
-      fmt::format("{}: {}{}{}", place(*document_, node ? *node : t), name, name.empty() ? "" : ": ", what));
+  return fmt::format("{}{}{}", place(*document_, node ? *node : t), name.empty() ? "" : ": ", name);
+}
+
+void Table::fail(std::string_view key, std::string_view what) const {
+  throw InputError(fmt::format("{}: {}", place_of(key), what));
 }
 
 namespace {
@@ -965,7 +968,7 @@ void list_defaults(const detail::Document& d, const toml::table& echoed, const t
     const toml::node* const was = d.defaults.get(name);
     const bool as_before = was && !d.set.contains(node) && (was->is_table() || same(*was, value));
     if (!d.kept.contains({&stated, std::string(key.str())}) && (!node || d.added.contains(node) || as_before)) {
-      if (value.is_table()) list.insert(name, toml::table{});
+      if (value.is_table()) list.insert(name, toml::table{}), list.get(name)->as_table()->is_inline(true);
       else list.insert(name, value);
     }
     if (!node) continue;

@@ -161,6 +161,8 @@ class Table {
 
   /// Whether the command line says this key, by `--set`.
   bool set_by_command(std::string_view key) const;
+  /// Where this key stands, as an error at it says: "case.toml:12: axis[1].values".
+  std::string place_of(std::string_view key) const;
   /// An error at this key, of a quantity at its stem with any unit (or at the table where the key is empty or absent).
   [[noreturn]] void fail(std::string_view key, std::string_view what) const;
 

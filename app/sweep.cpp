@@ -47,7 +47,7 @@ void compute_missing(const PointJob& job, const Plan& plan, const fs::path& root
   if (!finished.empty()) out.tell(fmt::format("{} of {} points are on disk already", finished.size(), plan.points));
   if (todo.empty()) return;
 
-  Progress progress = out.progress(fmt::format("{} points", todo.size()));
+  Progress progress = out.progress(post::counted(todo.size(), "point"));
   std::atomic<std::size_t> done = 0;
   std::atomic<double> busy = 0;
   const auto clock = [] { return std::chrono::steady_clock::now().time_since_epoch(); };
@@ -75,7 +75,8 @@ void compute_missing(const PointJob& job, const Plan& plan, const fs::path& root
       tbb::simple_partitioner());
   progress.finish();
   const double wall = std::chrono::duration<double>(clock() - start).count();
-  out.log(fmt::format("{} points in {:.2f} s of wall time, {:.2f} s of work", todo.size(), wall, busy.load()));
+  out.log(fmt::format("{} in {:.2f} s of wall time, {:.2f} s of work", post::counted(todo.size(), "point"), wall,
+                      busy.load()));
 }
 
 /// Every point, in order; where some are missing, an InputError that says how many.

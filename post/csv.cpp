@@ -69,15 +69,17 @@ Sheet parse_csv(std::string text, const std::string& name) {
         if (std::count(row.begin(), row.end(), row[c]) > 1)
           fail(row_line, fmt::format("column '{}' stands twice", row[c]));
       }
+      for (const auto& [sign, called] : {std::pair{';', "semicolons"}, {'\t', "tabs"}, {'|', "bars"}})
+        if (row.size() == 1 && row[0].find(sign) != std::string::npos)
+          fail(row_line, fmt::format("cells are separated by {} here: a comma is what separates cells, and a point the "
+                                     "decimals",
+                                     called));
       sheet.names = row;
       sheet.columns.resize(row.size());
       header = false;
     } else {
       if (row.size() != sheet.names.size())
-        fail(row_line, fmt::format("{} cells where the header has {}{}", row.size(), sheet.names.size(),
-                                   sheet.names.size() == 1 && sheet.names[0].find_first_of(";\t|") != std::string::npos
-                                       ? ": a comma is what separates cells"
-                                       : ""));
+        fail(row_line, fmt::format("{} cells where the header has {}", row.size(), sheet.names.size()));
       for (std::size_t c = 0; c < row.size(); ++c) sheet.columns[c].push_back(std::move(row[c]));
       sheet.lines.push_back(row_line);
     }

@@ -36,15 +36,14 @@ namespace {
 
 /// Units that no header of ours has: numbers in them are converted.
 constexpr std::array kOtherUnits = {
-    Unit{"cm", Dimension::length, 0.01},         Unit{"in", Dimension::length, 0.0254},
-    Unit{"ft", Dimension::length, 0.3048},       Unit{"ft/s", Dimension::speed, 0.3048},
+    Unit{"cm", Dimension::length, 0.01},         Unit{"ft/s", Dimension::speed, 0.3048},
     Unit{"kn", Dimension::speed, 1852.0 / 3600}, Unit{"mrad", Dimension::angle, 1e-3},
     Unit{"gon", Dimension::angle, kPi / 200},    Unit{"turn/s", Dimension::angular_velocity, 2 * kPi},
 };
 
 /// One of these, or of a header of ours.
 std::optional<Unit> known_unit(std::string_view name) {
-  for (const std::span<const Unit> all : {std::span<const Unit>(kOtherUnits), units()})
+  for (const std::span<const Unit> all : {std::span<const Unit>(kOtherUnits), all_units()})
     if (const auto at = std::ranges::find(all, name, &Unit::suffix); at != all.end()) return *at;
   return {};
 }

@@ -10,6 +10,7 @@
 #include <ranges>
 #include <set>
 
+#include "app/implausible.hpp"
 #include "app/import/session.hpp"
 #include "app/offer.hpp"
 #include "app/reader.hpp"
@@ -34,6 +35,22 @@ void write_csv(const fs::path& file, const std::vector<const Understood*>& colum
   for (std::size_t r = 0; !columns.empty() && r < columns.front()->cells.size(); ++r)
     line([&](const Understood& u) { return u.cells[r]; });
   post::write_file(file, text);
+}
+
+/// Of what was written: shots that no blow makes.
+void tell_implausible(const fs::path& out, std::vector<const Understood*> kept, const Dictionary& d) {
+  std::vector<std::string> rows = implausible_rows(loop::read_shots(post::read_csv(out / "shots.csv")));
+  std::erase_if(kept, [&](const Understood* u) { return d.bookkeeping_of(u->header) != "carry"; });
+  for (const Understood* u : kept) {  // it is no column of shots.csv
+    loop::Shots carry{.file = (out / "kept.csv").string(), .columns = {{.stem = "carry", .numeric = true}}};
+    for (const std::string& cell : u->cells) {
+      carry.line.push_back(carry.id.size() + 2);
+      carry.id.emplace_back();
+      carry.columns[0].value.push_back(si_of(unit_in(u->header)) * plain_number(cell).value_or(kNaN));
+    }
+    for (std::string& said : implausible_rows(carry)) rows.push_back(std::move(said));
+  }
+  for (const std::string& said : rows) fmt::print("  in doubt: {}\n", said);
 }
 
 /// The table of what was understood.
@@ -307,6 +324,7 @@ void import_shots(const ImportOptions& o) {
   for (const Understood& u : launches) whole.push_back(&u);
   write_csv(o.out / "shots.csv", good);
   if (!rest.empty()) write_csv(o.out / "kept.csv", rest);
+  tell_implausible(o.out, rest, d);
   if (sideways) write_csv(o.out / "launches.csv", whole);
   std::string names;
   for (const fs::path& file : o.files) names += (names.empty() ? "" : ", ") + file.filename().string();

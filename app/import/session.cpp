@@ -483,7 +483,7 @@ class Reading {
     out.median = loop::median(values);
     if (!values.empty() && !(out.median >= q.low && out.median <= q.high)) {
       std::string reads;
-      for (const Unit& u : units())
+      for (const Unit& u : all_units())
         if (u.dimension == split_unit(out.name).unit->dimension && u.suffix != given) {
           const double other = out.median / si_of(given) * u.si;
           if (other >= q.low && other <= q.high) reads += (reads.empty() ? "" : " or ") + std::string(u.suffix);
@@ -533,19 +533,23 @@ class Reading {
       u.name = name;
       for (int k = 2; std::ranges::count(out_.columns, u.name, &Understood::name); ++k)
         u.name = fmt::format("{}_{}", name, k);
-      // Numbers with a decimal comma are numbers for who reads the shots, too; a date is none.
-      static const std::regex with_comma("[+-]?([0-9]+|[0-9]{1,3}([.][0-9]{3})+)(,[0-9]+)?");
-      const auto is_number = [](const std::string& cell) { return cell.empty() || std::regex_match(cell, with_comma); };
-      const auto has_comma = [](const std::string& cell) { return cell.find(',') != cell.npos; };
-      const int decimals = decimal_of(sheet);
-      if ((decimals > 0 || (decimals == 0 && sheet.delimiter != ",")) && std::ranges::all_of(u.cells, is_number) &&
-          std::ranges::any_of(u.cells, has_comma)) {
-        for (std::string& cell : u.cells)
-          if (const auto x = number(cell, true, Sides::none)) cell = x->digits;
-        u.remark("decimal comma");
-      }
     }
+    if (role_[c].empty() || role_[c] == "carry") write_with_points(u);
     out_.columns.push_back(std::move(u));
+  }
+
+  /// Numbers with a decimal comma are numbers for who reads shots.csv and kept.csv, too; a date is none.
+  void write_with_points(Understood& u) const {
+    static const std::regex with_comma("[+-]?([0-9]+|[0-9]{1,3}([.][0-9]{3})+)(,[0-9]+)?");
+    const auto is_number = [](const std::string& cell) { return cell.empty() || std::regex_match(cell, with_comma); };
+    const auto has_comma = [](const std::string& cell) { return cell.find(',') != cell.npos; };
+    const int decimals = decimal_of(out_.sheet);
+    if (decimals < 0 || (decimals == 0 && out_.sheet.delimiter == ",") || !std::ranges::all_of(u.cells, is_number) ||
+        std::ranges::none_of(u.cells, has_comma))
+      return;
+    for (std::string& cell : u.cells)
+      if (const auto x = number(cell, true, Sides::none)) cell = x->digits;
+    u.remark("decimal comma");
   }
 
   /// A club's first spelling for all of its shots.

@@ -15,6 +15,7 @@
 #include "models/club/marker_swing.hpp"
 #include "post/csv.hpp"
 #include "post/figure.hpp"
+#include "post/labels.hpp"
 
 namespace hosel::app {
 namespace {
@@ -42,7 +43,8 @@ class IdentifyJob final : public Job {
     for (Table t : root.tables("swing")) {
       Recorded r;
       r.motion = read_motion(t.table("motion"));
-      r.deflection = t.data_file({"deflection", "CSV of the measured lead and droop of the hosel"});
+      r.deflection = t.data_file(
+          {"deflection", "CSV of the measured lead and droop of the hosel; a row with an empty cell is left out"});
       r.train = t.flag({"train", "fit this swing; otherwise it is predicted"}, true);
       swings_.push_back(std::move(r));
     }
@@ -137,13 +139,20 @@ class IdentifyJob final : public Job {
                               .begin = r.motion.begin,
                               .end = r.motion.end,
                               .train = r.train};
-      m.times = column_with_gaps(sheet, "time_s");
-      m.lead = column_with_gaps(sheet, "lead_mm");
-      m.droop = column_with_gaps(sheet, "droop_mm");
+      const auto times = column_with_gaps(sheet, "time_s"), lead = column_with_gaps(sheet, "lead_mm"),
+                 droop = column_with_gaps(sheet, "droop_mm");
+      for (std::size_t i = 0; i < times.size(); ++i) {
+        if (!std::isfinite(times[i])) throw InputError(fmt::format("{}:{}: no time", sheet.file, sheet.lines[i]));
+        if (std::isinf(lead[i]) || std::isinf(droop[i]))
+          throw InputError(fmt::format("{}:{}: a deflection is infinite", sheet.file, sheet.lines[i]));
+        if (std::isnan(lead[i]) || std::isnan(droop[i])) continue;
+        m.times.push_back(times[i]), m.lead.push_back(1e-3 * lead[i]), m.droop.push_back(1e-3 * droop[i]);
+      }
+      if (m.times.size() < times.size())
+        out.lack(fmt::format("{}: {} of {} have no lead or no droop: left out", r.deflection.filename().string(),
+                             times.size() - m.times.size(), post::counted(times.size(), "row")));
       if (const auto wrong = models::faults(m); !wrong.empty())
         throw InputError(fmt::format("{}: {}", r.deflection.string(), wrong.front()));
-      for (double& x : m.lead) x *= 1e-3;
-      for (double& x : m.droop) x *= 1e-3;
       measured.push_back(std::move(m));
     }
     const models::ShaftIdentification r = models::identify_shaft(club_, options_, measured);
@@ -203,7 +212,9 @@ class IdentifyJob final : public Job {
     error("nominal", nominal);
     error("identified", identified);
 
-    post::Figure figure{.columns = 2};
+    post::Figure figure{.title = fmt::format("fitted from {:g} to {:g} s, predicted from {:g} to {:g} s", train_[0],
+                                             train_[1], test_[0], test_[1]),
+                        .columns = 2};
     for (const bool is_lead : {true, false}) {
       post::Panel panel{.title = is_lead ? "lead" : "droop", .x_label = "time [s]", .y_label = "deflection [mm]"};
       post::Series measured{.label = "measured", .style = "points"};

@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <optional>
 
+#include "app/implausible.hpp"
 #include "app/kinds/loop_common.hpp"
 #include "app/kinds/loop_corrected.hpp"
 #include "app/kinds/loop_landings.hpp"
@@ -106,6 +107,8 @@ class LoopJob final : public Job {
         case_.shots = loop::read_shots(post::read_csv(path), case_.flight.has_value());
         if (joined) loop::join(case_.shots, post::read_csv(joined->first), joined->second);
         repeated_ = case_.shots.repeated;
+        if (case_.shots.rows() <= loop::kMostShots)  // else it is refused
+          for (const std::string& rows : implausible_rows(case_.shots)) data.doubt(rows);
         if (!average_by.empty()) {
           auto [means, about] = loop::average(std::move(case_.shots), average_by);
           case_.shots = std::move(means);

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <map>
 
+#include "app/implausible.hpp"
 #include "app/kinds/loop_common.hpp"
 #include "app/read_blow.hpp"
 #include "app/read_flight.hpp"
@@ -85,6 +86,7 @@ class LoopFlightJob final : public Job {
     if (!std::filesystem::exists(path)) skipped_ = path;
     if (skipped_.empty()) try {
         case_.shots = loop::read_shots(post::read_csv(path), true);
+        for (const std::string& rows : implausible_rows(case_.shots)) data.doubt(rows);
       } catch (const DataError& e) { throw InputError(e.what()); }
     for (const std::string& name : case_.group_by)
       if (skipped_.empty() && !case_.shots.find(name))

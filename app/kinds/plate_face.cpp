@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <numeric>
 
@@ -12,6 +13,7 @@
 #include "app/read_blow.hpp"
 #include "app/read_face.hpp"
 #include "app/read_options.hpp"
+#include "app/solution_doubts.hpp"
 #include "app/stop.hpp"
 #include "app/stored_launch.hpp"
 #include "app/sweep.hpp"
@@ -70,7 +72,7 @@ class PlateFaceJob final : public PointJob {
                              limits::impact_place, std::vector{-0.018, 0.0, 0.018});
     high_ = places.quantities({"high", "rows of the places where a ball is struck, up the face"}, "mm", 0,
                               limits::impact_place, std::vector{-0.009, 0.0, 0.009});
-    if (toe_.empty() || high_.empty()) places.fail("toe", "name at least one place");
+    if (toe_.empty() || high_.empty()) places.fail(toe_.empty() ? "toe" : "high", "name at least one place");
     grid_ = read_face_grid(root);
     if (!any_of_grid_on(plate_->design().outline)) {
       const Vector2d reach = plate_->design().outline.extent();
@@ -136,6 +138,8 @@ class PlateFaceJob final : public PointJob {
     out["face_travel_m"] = outcome.result.face_travel;
     out["face_energy_J"] = outcome.result.face_energy;
     out["closure"] = outcome.result.ledger.closure / outcome.result.ledger.initial;
+    for (const SolutionDoubt& d : solution_doubts(blow, outcome))
+      out["doubts"].push_back({{"what", d.what}, {"value", d.value}, {"sentence", d.sentence()}});
     return out;
   }
 
@@ -144,6 +148,7 @@ class PlateFaceJob final : public PointJob {
     const models::PlateStrike strike(plate, blow_.club.head);
     json summary;
     doubt_places(out);
+    doubt_solutions(out, points);
     show_maps(out, strike, summary);
     show_plate(out, *plate, summary);
     show_blows(out, points, summary);
@@ -169,6 +174,27 @@ class PlateFaceJob final : public PointJob {
           "The farthest: {:g} mm towards the {} and {:g} mm {}",
           1e3 * reach.x(), 1e3 * reach.y(), off, post::counted(places_.size(), "place"), 1e3 * std::abs(worst.x()),
           worst.x() > 0 ? "heel" : "toe", 1e3 * std::abs(worst.y()), worst.y() < 0 ? "down" : "up"));
+  }
+
+  /// What the blows of the places doubt of their solutions: a sentence of a kind, with the worst of them.
+  void doubt_solutions(Output& out, const std::vector<json>& points) const {
+    struct Worst {
+      std::size_t count = 0, blow = 0;
+      double value = 0;
+      std::string sentence;
+    };
+    std::map<std::string, Worst> kinds;
+    for (std::size_t i = 0; i < companions_; ++i)
+      for (const json& d : points[i].value("doubts", json::array())) {
+        Worst& w = kinds[d["what"]];
+        ++w.count;
+        if (const double value = d["value"]; std::abs(value) > std::abs(w.value))
+          w.value = value, w.blow = i, w.sentence = d["sentence"];
+      }
+    for (const auto& [what, w] : kinds)
+      out.warn(fmt::format("{} of {}; the worst, at toe {:g}, high {:g} mm: {}", w.count,
+                           post::counted(companions_, "blow"), -1e3 * blows_[w.blow].place.x() + 0.0,
+                           1e3 * blows_[w.blow].place.y() + 0.0, w.sentence));
   }
 
   struct Struck {

@@ -140,11 +140,7 @@ class StudyJob final : public PointJob {
         root.fail("case", fmt::format("with the studies inside it, this one has more than {} points", kMostPoints));
       try {
         read_point(root, d);
-      } catch (const InputError& e) {
-        const std::string from = table_.design.from(d);
-        if (from.empty()) throw;
-        throw InputError(fmt::format("{}: {}", from, e.what()));
-      }
+      } catch (const InputError& e) { throw InputError(table_.design.refused(d, e.what())); }
     }
   }
 
@@ -203,6 +199,8 @@ class StudyJob final : public PointJob {
     effects.emulators.resize(table.series.size());
     if (named) {
       tell_missing(out, table, points);
+      find_idle(effects, table,
+                [&](std::size_t column, std::size_t model) { return idle_alone(table, column, model, out); });
       tell_effects(out, table, effects, summary);
       const json between = sliders(table, effects);
       if (!between.is_null()) out.page().section("Between the points", "");
@@ -236,6 +234,9 @@ class StudyJob final : public PointJob {
       if (json slopes = report_regression(out, *regression_); !slopes.is_null()) summary["regression"] = slopes;
     if (!parts_.all.empty()) summary["parts"] = report_parts(out, table, parts_, draw_);
     if (!statements_.empty()) summary["statements"] = judge(out, table, statements_, against, groups(table, layers));
+    if (!statements_.empty() && reference_ && reference_->model)
+      out.say(
+          fmt::format("{} is what the others are compared with: the statements do not judge it.", reference_->name));
     if (named && draw_) draw_study(out, table, title_, figures_, effects, reference_, against);
     if (conditions_.histories) report_histories(out, table, points, draw_);
     out.page().answer("points", fmt::format("{}", points.size()),
@@ -308,6 +309,34 @@ class StudyJob final : public PointJob {
             "{}: no point has it{}", s.name,
             table.outputs[s.output].starts_with("total_") ? "; a ball that rolls on needs [flight.turf]" : ""));
     }
+  }
+
+  /// Of a column that a sample draws: whether a model answers as before where it alone is changed, at three points.
+  std::optional<bool> idle_alone(const StudyTable& table, std::size_t column, std::size_t model, Output& out) const {
+    if (!solves_.empty() || conditions_.matched_launch || conditions_.bounce_speed) return {};
+    const auto x = table.design.numbers(column);
+    std::size_t asked = 0;
+    for (std::size_t d = 0; d < std::min<std::size_t>(table.design.size(), 10) && asked < 3; ++d) {
+      const auto set = x.empty() ? std::vector<std::string>() : table.design.set_with(d, column, farthest_from(x, d));
+      if (set.empty()) return {};
+      std::vector<std::optional<double>> there;
+      try {
+        there = studied_ ? answers_of_case(set, out.directory() / "alone") : answers_at(set, model);
+      } catch (const std::exception&) { continue; }  // no answer there: another point tells
+      bool answered = false;
+      for (std::size_t o = 0; o < there.size(); ++o) {
+        const double y = table.at(model, o).y[d];
+        if (std::isfinite(y) != there[o].has_value() || (there[o] && !same_answer(y, *there[o]))) return false;
+        answered = answered || there[o];
+      }
+      asked += answered;
+    }
+    return asked == 3;
+  }
+
+  static std::size_t farthest_from(const std::vector<double>& x, std::size_t d) {
+    return std::size_t(std::ranges::max_element(x, {}, [&](double other) { return std::abs(other - x[d]); }) -
+                       x.begin());
   }
 
   /// Whether a point has this column: what is solved for is sought in some variants only.

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "app/read_blow.hpp"
@@ -12,6 +13,7 @@
 #include "post/figure.hpp"
 #include "post/swing_recorder.hpp"
 #include "post/table.hpp"
+#include "solvers/errors.hpp"
 
 namespace hosel::app {
 namespace {
@@ -26,6 +28,10 @@ class SwingJob final : public Job {
     motion_ = read_motion(root.table("motion"));
     options_ = read_swing_options(root);
     grip_ = read_grip_drive(root);
+    errors_ = root.flag({"numerical_error",
+                         "swing once more with steps twice as long (by ida: by generalized-alpha): how far the end "
+                         "moves"},
+                        true);
     if (auto output = root.optional_table("output")) {
       record_.vtk = output->flag({"vtk", "write series for ParaView"}, record_.vtk);
       record_.steps_per_frame = int(output->integer({"steps_per_frame", "time steps from one frame to the next"}, 1,
@@ -39,11 +45,7 @@ class SwingJob final : public Job {
     const models::GripMotion grip(motion_.track, motion_.smoothing);
     const fem::Motion motion = [&](double t) { return grip.at(t); };
     models::Swing swing(club_, options_, make_drive(grip_, motion_, motion));
-    // The swing starts bent by gravity, in the hands' springs or as a grip that is held would have it.
-    models::Swing held(club_, options_,
-                       {.kind = models::GripDrive::Kind::prescribed, .motion = motion, .wrench = {}, .hands = {}});
-    models::Swing& hanging = grip_.kind == models::GripDrive::Kind::hands ? swing : held;
-    const fem::State from = swing.start(motion_.begin, hanging.equilibrium(motion_.begin));
+    const fem::State from = begun(swing, options_, motion);
     std::vector<models::SwingSample> samples;
     post::SwingRecorder recorder(out.directory(), club_, swing, record_);
     {
@@ -117,6 +119,9 @@ class SwingJob final : public Job {
                              {"numerical", l.numerical}, {"external", l.external},     {"initial", l.initial},
                              {"closure", l.closure}};
     summary["steps"] = swing.counts().steps;
+    const std::vector<Moved> moved = errors_ ? moved_by_steps(out, motion, last, swing.head() != nullptr)
+                                             : std::vector<Moved>{};
+    for (const Moved& m : moved) summary["numerical_error"][m.key] = m.by;
     RunPage& page = out.page();
     const bool mph = out.page_units() == post::Units::golf;
     page.answer(swing.head() ? "club speed" : "speed of the tip",
@@ -135,6 +140,7 @@ class SwingJob final : public Job {
       page.answer("face angle", angle(d.face_angle));
     }
     show_solution(page, swing, samples.back().time - samples.front().time);
+    show_moved(out, moved);
     out.say(fmt::format(
         "at {:.4f} s: lead {:.1f} mm, droop {:.1f} mm; {} {:.2f} m/s, attack {:.2f} deg, path {:.2f} deg{}", last.time,
         1e3 * last.lead, 1e3 * last.droop, swing.head() ? "head" : "tip", d.club_speed, degrees(d.attack_angle),
@@ -147,6 +153,72 @@ class SwingJob final : public Job {
   }
 
  private:
+  /// How far a quantity at the end moves with other steps, and what is worth a doubt, in the unit of its key.
+  struct Moved {
+    std::string_view key, what;
+    double by, much;
+  };
+
+  /// The start: bent by gravity, in the hands' springs or as a grip that is held would have it.
+  fem::State begun(models::Swing& swing, const models::SwingOptions& options, const fem::Motion& motion) const {
+    models::Swing held(club_, options,
+                       {.kind = models::GripDrive::Kind::prescribed, .motion = motion, .wrench = {}, .hands = {}});
+    models::Swing& hanging = grip_.kind == models::GripDrive::Kind::hands ? swing : held;
+    return swing.start(motion_.begin, hanging.equilibrium(motion_.begin));
+  }
+
+  std::string_view companion() const {
+    return options_.integrator == models::SwingIntegrator::ida ? "generalized-alpha" : "steps twice as long";
+  }
+
+  /// A second swing against the first one's end; nothing where it does not converge.
+  std::vector<Moved> moved_by_steps(Output& out, const fem::Motion& motion, const models::SwingSample& last,
+                                    bool head) const {
+    models::SwingOptions other = options_;
+    if (options_.integrator == models::SwingIntegrator::ida)
+      other.integrator = models::SwingIntegrator::generalized_alpha;
+    else other.step *= 2;
+    models::SwingSample end;
+    try {
+      models::Swing swing(club_, other, make_drive(grip_, motion_, motion));
+      swing.run(begun(swing, other, motion), motion_.end, [&](const models::SwingSample& s) { end = s; });
+    } catch (const solvers::NonConvergence& e) {
+      out.warn(fmt::format("nothing is known of the error of the time steps: by {} the swing has no answer ({})",
+                           companion(), e.what()));
+      return {};
+    }
+    const Delivery d = models::delivery_of(last.head), o = models::delivery_of(end.head);
+    const auto angle = [](double a, double b) { return std::abs(degrees(std::remainder(a - b, 2 * kPi))); };
+    constexpr double much_deg = 0.25, much_mm = 2;
+    std::vector<Moved> moved = {
+        {"club_speed_mps", head ? "club speed [m/s]" : "speed of the tip [m/s]", std::abs(d.club_speed - o.club_speed),
+         0.005 * d.club_speed},
+        {"attack_angle_deg", "attack angle [°]", angle(d.attack_angle, o.attack_angle), much_deg},
+        {"club_path_deg", "club path [°]", angle(d.club_path, o.club_path), much_deg},
+        {"lead_mm", "lead [mm]", 1e3 * std::abs(last.lead - end.lead), much_mm},
+        {"droop_mm", "droop [mm]", 1e3 * std::abs(last.droop - end.droop), much_mm}};
+    if (head) {
+      moved.push_back({"dynamic_loft_deg", "dynamic loft [°]", angle(d.dynamic_loft, o.dynamic_loft), much_deg});
+      moved.push_back({"face_angle_deg", "face angle [°]", angle(d.face_angle, o.face_angle), much_deg});
+    }
+    return moved;
+  }
+
+  void show_moved(Output& out, const std::vector<Moved>& moved) const {
+    if (moved.empty()) return;
+    post::TextTable t{.rows = {{fmt::format("moved by {}", companion()), ""}}};
+    std::string doubtful;
+    for (const Moved& m : moved) {
+      t.rows.push_back({std::string(m.what), fmt::format("{:.2g}", m.by)});
+      if (m.by > m.much) doubtful += fmt::format("{}{} {:.2g}", doubtful.empty() ? "" : ", ", m.what, m.by);
+    }
+    out.page().section("", t.html());
+    out.say(fmt::format("{} move the end by {:.2g} m/s of speed, {:.2g} mm of lead and {:.2g} mm of droop", companion(),
+                        moved[0].by, moved[3].by, moved[4].by));
+    if (!doubtful.empty())
+      out.warn(fmt::format("{} move the end of the swing by {}: shorten solution.step", companion(), doubtful));
+  }
+
   /// Steps, what they left, and the energy balance.
   void show_solution(RunPage& page, const models::Swing& swing, double seconds) const {
     const auto& counts = swing.counts();
@@ -175,6 +247,7 @@ class SwingJob final : public Job {
   MotionInput motion_;
   models::SwingOptions options_;
   GripInput grip_;
+  bool errors_ = true;
   post::SwingRecorderOptions record_;
 };
 

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <tuple>
 
+#include "app/implausible.hpp"
 #include "app/library.hpp"
 #include "app/read_blow.hpp"
 #include "app/read_flight.hpp"
@@ -153,11 +154,14 @@ class TuneJob final : public Job {
       f.bounds = {read({"min", "lower bound of the fit"}, range.min),
                   read({"max", "upper bound of the fit"}, range.max)};
       if (!(f.bounds.low < f.bounds.high)) t.fail("", "min must lie below max");
-      f.start = read({"start", "first guess of the first search"}, std::clamp(standard, f.bounds.low, f.bounds.high));
+      const bool stated = unit.empty() ? t.has("start") : t.has_quantity("start");
+      f.start = read({"start", "first guess of the first search; by default the case's own value"}, standard);
       if (!(f.start >= f.bounds.low && f.start <= f.bounds.high)) {
-        const double si = unit.empty() ? 1 : split_unit("start_" + unit).unit->si;
-        t.fail("start", fmt::format("{:g} lies outside the bounds of the fit ({:g} to {:g}{}{})", f.start / si,
-                                    f.bounds.low / si, f.bounds.high / si, unit.empty() ? "" : " ", unit));
+        const std::string bounds = fmt::format("the bounds of the fit ({:g} to {:g}{}{})", f.bounds.low / f.si(),
+                                               f.bounds.high / f.si(), unit.empty() ? "" : " ", unit);
+        if (stated) t.fail("start", fmt::format("{:g} lies outside {}", f.start / f.si(), bounds));
+        t.fail("name", fmt::format("'{}' is {:g} in the case, outside {}: state a `start`", f.parameter->name,
+                                   f.start / f.si(), bounds));
       }
       free_.push_back(f);
     }
@@ -204,6 +208,7 @@ class TuneJob final : public Job {
       shots = loop::read_shots(sheet, flies_);
       if (!join_by_.empty()) loop::join(shots, post::read_csv(join_file_), join_by_);
     } catch (const DataError& e) { throw InputError(e.what()); }
+    for (const std::string& rows : implausible_rows(shots)) out.warn(rows);
     if (shots.repeated > 0)
       out.lack(fmt::format("{} rows of the shots repeat an earlier row: each shot counts once", shots.repeated));
     std::vector<std::pair<Input, const loop::Column*>> inputs;

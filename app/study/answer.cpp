@@ -291,10 +291,15 @@ StudyBlow read_study_blow(Table root) {
     out.plate = {
         t->quantity({"young", "Young's modulus of a thick elastic plate; absent: rigid"}, "GPa", Range::positive()),
         t->number({"poisson", "Poisson's ratio of the plate"}, {0, 0.49})};
-    if (!std::isinf(out.blow.club.head.mass)) t->fail("", "a plate is a wall: head.mass_kg = inf");
+    if (const double mass = out.blow.club.head.mass; !std::isinf(mass))
+      root.table("head").fail("mass", fmt::format("{:g} kg beside [plate], which is a wall (allowed: inf)", mass));
     try {
       models::ElasticPlate(out.options.fe, *out.plate, out.blow.ball);
-    } catch (const std::invalid_argument& e) { t->fail("", e.what()); }
+    } catch (const std::invalid_argument& e) {
+      const bool of_ball = std::string_view(e.what()).find("sphere") != std::string_view::npos;
+      if (of_ball) root.default_table("ball").fail("layers", e.what());
+      t->fail("young", e.what());
+    }
   }
   return out;
 }
@@ -304,7 +309,7 @@ StudyOutput find_study_output(const Table& table, std::string_view key, const st
   const SplitName split = split_unit(name);
   std::vector<std::string> known;
   const auto unit_of = [&](std::string_view stem, Dimension dimension) -> std::optional<Unit> {
-    for (const Unit& u : units())
+    for (const Unit& u : all_units())
       if (u.dimension == dimension) {
         known.push_back(fmt::format("{}_{}", stem, u.suffix));
         break;
@@ -319,7 +324,7 @@ StudyOutput find_study_output(const Table& table, std::string_view key, const st
     return {name, unit->si, [of = q.of](const StudyAnswer& a) -> MaybeNumber { return (a.launch.*of)(); }};
   }
   for (const post::FlightChannel& c : post::flight_channels(post::DistanceUnit::metres)) {
-    const auto all = units();
+    const auto all = all_units();
     const auto unit = unit_of(c.name, std::ranges::find(all, c.unit, &Unit::suffix)->dimension);
     if (!unit) continue;
     if (!flies) table.fail(key, fmt::format("'{}' is of the flight, and there is no [flight]", name));
@@ -373,6 +378,11 @@ StudyAnswer answer(const std::string& model, const StudyBlow& asked, const Study
     out.blow = std::move(found.blow);
     out.launch = found.launch;
     if (remembering) doubt_solution(out, model, remembering->last());
+  } else if (const auto* wall = dynamic_cast<const models::ElasticPlate*>(made.get())) {
+    const models::FeOutcome outcome = wall->run(out.blow);
+    out.launch = outcome.launch;
+    models::check_launch(*made, out.blow, out.launch);
+    doubt_solution(out, model, outcome);
   } else if (const models::Impact* fe = made->impact()) {
     models::FaceStress stress;
     std::function<void(const models::ImpactView&)> watch;

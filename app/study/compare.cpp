@@ -122,7 +122,7 @@ nlohmann::json compare(Output& out, const StudyTable& table, const StudyReferenc
       }
       auto& row = shown.rows.emplace_back();
       row = {post::label(table.outputs[o]), post::beside(mean, scale, true), post::beside(rms, scale),
-             post::beside(largest, scale, true), table.design.said(where)};
+             post::beside(largest, scale, true), largest == 0 ? "-" : table.design.said(where)};
       if (any_cause) row.push_back(cause);
       nlohmann::json j = {
           {"output", table.outputs[o]},       {"points", count}, {"mean", mean}, {"rms", rms}, {"largest", largest},

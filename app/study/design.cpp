@@ -53,6 +53,7 @@ DesignFactor read_variants(Table root) {
       for (std::size_t j = 0; j < i; ++j)
         if (same_quantity(key_of(level.set[i]), key_of(level.set[j])))
           t.fail("set", fmt::format("gives one quantity twice: '{}' and '{}'", level.set[j], level.set[i]));
+    level.from = t.place_of("set");
     t.text({"range", "where its figures come from"}, "");
     if (auto m = t.optional_table("measured")) level.measured = read_measured(*m);
     out.levels.push_back(std::move(level));
@@ -90,16 +91,16 @@ DesignFactor read_rows(Table t) {
 }
 
 /// A value of an axis, as it stands in TOML.
-DesignLevel axis_level(const std::vector<std::string>& keys, const std::string& toml) {
-  DesignLevel l{.cells = {without_quotes(toml)}};
+DesignLevel axis_level(const std::vector<std::string>& keys, const std::string& toml, const std::string& from = {}) {
+  DesignLevel l{.cells = {without_quotes(toml)}, .from = from};
   for (const std::string& key : keys) l.set.push_back(key + "=" + toml);
   return l;
 }
 
-DesignFactor grid_factor(const post::FaceGrid& grid) {
+DesignFactor grid_factor(const post::FaceGrid& grid, const std::string& from) {
   DesignFactor out{.kind = FactorKind::grid, .columns = {"delivery.impact_toe_mm", "delivery.impact_high_mm"}};
   for (std::size_t p = 0; p < grid.size(); ++p) {
-    DesignLevel level;
+    DesignLevel level{.from = from};
     for (std::size_t c = 0; c < 2; ++c) {
       const double mm = 1e3 * (c == 0 ? grid.toe_at(p) : grid.high_at(p));
       level.cells.push_back(fmt::format("{:.6g}", mm));
@@ -144,7 +145,7 @@ void Design::add(DesignFactor factor, const Table& at, std::string_view key) {
 
 void Design::add(const post::FaceGrid& grid, const Table& at) {
   grid_ = grid;
-  add(grid_factor(grid), at, "grid");
+  add(grid_factor(grid, at.place_of("grid")), at, "grid");
 }
 
 std::vector<std::string> Design::leave_out_rows(const std::function<bool(const DesignLevel&)>& absent) {
@@ -253,6 +254,36 @@ std::vector<std::string> Design::set(std::size_t point, const std::vector<std::s
   return first;
 }
 
+std::vector<std::string> Design::set_with(std::size_t point, std::size_t column, std::size_t other) const {
+  const auto [f, c] = place(column);
+  if (factors_[f].drawn.empty()) return {};
+  const auto& keys = factors_[f].drawn[c].keys;
+  std::vector<std::string> out = set(point, {});
+  for (std::string& s : out)
+    for (const std::string& there : level(f, other).set)
+      if (key_of(s) == key_of(there) && std::ranges::find(keys, key_of(s)) != keys.end()) s = there;
+  return out;
+}
+
+std::string Design::refused(std::size_t point, const std::string& why) const {
+  std::string row;
+  for (std::size_t f = 0; f < factors_.size(); ++f) {
+    const DesignLevel& l = level(f, point);
+    if (factors_[f].kind == FactorKind::rows) row = l.from;
+    for (const std::string& s : l.set) {
+      const std::string set = fmt::format("--set {}: ", s);
+      if (!why.starts_with(set)) continue;
+      std::string from = l.from;
+      for (const DrawnColumn& c : factors_[f].drawn)
+        if (std::ranges::find(c.keys, key_of(s)) != c.keys.end()) from = c.from;
+      return fmt::format("{}: {}", from, why.substr(set.size()));
+    }
+  }
+  if (!row.empty()) return fmt::format("{}: {}", row, why);
+  const std::string where = said(point);
+  return where.empty() ? why : fmt::format("{} (at {})", why, where);
+}
+
 std::vector<MeasuredRange> Design::measured(std::size_t point) const {
   std::vector<MeasuredRange> out;
   for (std::size_t f = 0; f < factors_.size(); ++f) {
@@ -262,12 +293,13 @@ std::vector<MeasuredRange> Design::measured(std::size_t point) const {
   return out;
 }
 
-std::string said_cell(const std::string& column, const std::string& cell) {
+std::string said_cell(const std::string& column, const std::string& cell, int digits) {
   if (column == "variant" || column == "row") return cell;
   const SplitName split = split_unit(column);
   const std::string name = post::label(column);
   const auto number = post::number(cell);
-  return fmt::format("{} {}{}", name.substr(0, name.find(" [")), number ? fmt::format("{:.6g}", *number) : cell,
+  return fmt::format("{} {}{}", name.substr(0, name.find(" [")),
+                     number ? fmt::format("{:.{}g}", *number, digits) : cell,
                      split.unit ? " " + post::symbol(split.unit->suffix) : "");
 }
 
@@ -300,10 +332,10 @@ Design read_design(Table root) {
   DesignFactor sampled{.kind = FactorKind::sample};
   sampled.levels.resize(points);
   const auto draw = [&](const std::string& name, const std::vector<std::string>& keys,
-                        const solvers::Distribution& spread) {
+                        const solvers::Distribution& spread, const std::string& from) {
     const std::vector<double> drawn = solvers::drawn(spread, points, latin, random);
     sampled.columns.push_back(name);
-    sampled.drawn.push_back({keys, spread});
+    sampled.drawn.push_back({keys, spread, from});
     for (std::size_t i = 0; i < points; ++i) {
       DesignLevel l = axis_level(keys, fmt::format("{}", drawn[i]));
       sampled.levels[i].cells.push_back(l.cells.front());
@@ -326,13 +358,15 @@ Design read_design(Table root) {
           t.fail(t.has("keys") ? "keys" : "key", fmt::format("'{}' is an axis already", other));
       swept.emplace_back(key, t);
     }
-    const auto level = [&](const std::string& toml) { return axis_level(keys, toml); };
+    const auto level = [&](const std::string& toml) {
+      return axis_level(keys, toml, t.place_of(t.has("range") ? "range" : "values"));
+    };
     DesignFactor axis{.kind = FactorKind::axis, .columns = {name}};
     if (t.has("mean")) {
       if (!sample) t.fail("mean", "a [sample] draws from a normal distribution");
       const double mean = t.number({"mean", "of a normal distribution from which the [sample] draws"});
       const double sd = t.number({"sd", "standard deviation of that distribution"}, Range::positive());
-      draw(name, keys, {.kind = solvers::Distribution::Kind::normal, .mean = mean, .sd = sd});
+      draw(name, keys, {.kind = solvers::Distribution::Kind::normal, .mean = mean, .sd = sd}, t.place_of("mean"));
       continue;
     }
     if (!t.has("range")) {
@@ -361,7 +395,7 @@ Design read_design(Table root) {
       axes.push_back(std::move(axis));
       continue;
     }
-    draw(name, keys, {.low = range[0], .high = range[1]});
+    draw(name, keys, {.low = range[0], .high = range[1]}, t.place_of("range"));
   }
   if (sample && sampled.columns.empty()) sample->fail("", "no [[axis]] has a range, or a mean and sd, to draw from");
   if (sample) out.add(std::move(sampled), root, "sample");

@@ -34,13 +34,14 @@ struct DesignLevel {
   std::vector<std::string> cells;  ///< one a column of its factor
   std::vector<std::string> set;    ///< overrides, key=value
   std::vector<MeasuredRange> measured;
-  std::string from;  ///< file and line, of a row
+  std::string from;  ///< file and line, and the key but for a row; empty: of a sample
 };
 
 /// How the values of one column of a sample were drawn, and the keys of the case that they set.
 struct DrawnColumn {
   std::vector<std::string> keys;
   solvers::Distribution spread;
+  std::string from;  ///< file, line and key
 };
 
 struct DesignFactor {
@@ -81,13 +82,11 @@ class Design {
   }
   /// What a point changes: variants and rows first, then `between`, then sample, grid and axes.
   std::vector<std::string> set(std::size_t point, const std::vector<std::string>& between) const;
+  /// The same with one column's keys as another point has them; nothing where the column is not drawn by itself.
+  std::vector<std::string> set_with(std::size_t point, std::size_t column, std::size_t other) const;
   std::vector<MeasuredRange> measured(std::size_t point) const;
-  /// File and line of a point's row; empty without [rows].
-  std::string from(std::size_t point) const {
-    std::string out;
-    for (std::size_t f = 0; f < factors_.size(); ++f) out += level(f, point).from;
-    return out;
-  }
+  /// What a point's case refuses, with file and line of what the design set there, or of the point's row.
+  std::string refused(std::size_t point, const std::string& why) const;
   /// "dynamic loft 30 deg, friction 0.2": where a point lies, in words; columns of one value are left out, and those of
   /// `but`.
   std::string said(std::size_t point, std::optional<DesignFactor::Kind> but = {}) const;
@@ -117,6 +116,6 @@ Design read_design(Table root);
 std::vector<MeasuredRange> read_measured(Table table);
 
 /// A cell in words: the value with its column's name and unit, "club speed 45 m/s".
-std::string said_cell(const std::string& column, const std::string& cell);
+std::string said_cell(const std::string& column, const std::string& cell, int digits = 6);
 
 }  // namespace hosel::app

@@ -56,7 +56,7 @@ class StudyView {
     std::string text;
     for (std::size_t c = 0; c < columns(); ++c)
       if (!free.contains(c) && levels(c) > 1)
-        text += (text.empty() ? "" : ", ") + said_cell(names_[c], levels_[c][levels(c) / 2]);
+        text += (text.empty() ? "" : ", ") + said_cell(names_[c], levels_[c][levels(c) / 2], 4);
     return text;
   }
   /// The columns of words: they have no middle.

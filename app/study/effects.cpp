@@ -8,6 +8,7 @@
 #include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "post/digits.hpp"
 #include "post/labels.hpp"
@@ -70,28 +71,28 @@ std::vector<std::size_t> by_total(const StudyEffects& effects, std::size_t serie
   return order;
 }
 
-/// Whether no answer changes between points that differ in one column alone, and every point has such another.
-bool changes_nothing(const StudyTable& table, std::size_t column) {
-  constexpr double round_off = 1e-12;  // relative
+/// Whether no answer of a model changes between points that differ in one column alone; nothing where a point has no
+/// such other.
+std::optional<bool> changes_nothing(const StudyTable& table, std::size_t column, std::size_t model) {
   std::map<std::vector<std::string>, std::vector<std::size_t>> alike;
   for (std::size_t d = 0; d < table.design.size(); ++d) {
     std::vector<std::string> others = table.design.cells(d);
     others.erase(others.begin() + std::ptrdiff_t(column));
     alike[others].push_back(d);
   }
+  if (std::ranges::any_of(alike, [](const auto& a) { return a.second.size() < 2; })) return {};
   for (const auto& [others, points] : alike)
     for (const StudySeries& s : table.series)
       for (const std::size_t d : points)
-        if (points.size() < 2 || !(std::abs(s.y[d] - s.y[points.front()]) <= round_off * std::abs(s.y[d])))
-          return false;
+        if (s.model == model && !same_answer(s.y[d], s.y[points.front()])) return false;
   return true;
 }
 
-/// Parameters that no model reads, or that the outputs do not show.
-std::string without_effect(const StudyTable& table, const StudyEffects& effects) {
+/// Parameters that a model does not read, or that its outputs do not show.
+std::string without_effect(const StudyTable& table, const StudyEffects& effects, std::size_t model) {
   std::vector<std::string> idle;
-  for (const std::size_t c : effects.columns)
-    if (changes_nothing(table, c)) idle.push_back(spoken_column(table.design.columns()[c]));
+  for (std::size_t f = 0; f < effects.columns.size(); ++f)
+    if (effects.idle[model][f]) idle.push_back(spoken_column(table.design.columns()[effects.columns[f]]));
   return fmt::format("{}", fmt::join(idle, " or "));
 }
 
@@ -104,6 +105,31 @@ bool names_a_row(const Design& design, std::size_t column) {
 }
 
 }  // namespace
+
+bool same_answer(double a, double b) {
+  constexpr double round_off = 1e-12;  // relative
+  return std::abs(a - b) <= round_off * std::abs(a);
+}
+
+void find_idle(StudyEffects& effects, const StudyTable& table,
+               const std::function<std::optional<bool>(std::size_t, std::size_t)>& alone) {
+  effects.idle.assign(table.models.size(), std::vector<bool>(effects.columns.size()));
+  if (effects.columns.size() < 2) return;
+  for (std::size_t m = 0; m < table.models.size(); ++m)
+    for (std::size_t f = 0; f < effects.columns.size(); ++f) {
+      std::optional<bool> idle = changes_nothing(table, effects.columns[f], m);
+      const auto surely = [&](const StudySeries& s) {
+        const auto& e = effects.of[std::size_t(&s - table.series.data())];
+        return s.model == m && e && e->factors[f].low > 0;
+      };
+      const auto told = [&](const StudySeries& s) {
+        return s.model == m && effects.of[std::size_t(&s - table.series.data())].has_value();
+      };
+      if (!idle && std::ranges::any_of(table.series, told) && std::ranges::none_of(table.series, surely))
+        idle = alone(effects.columns[f], m);
+      effects.idle[m][f] = idle.value_or(false);
+    }
+}
 
 StudyEffects effects_of(const StudyTable& table) {
   StudyEffects out;
@@ -294,9 +320,13 @@ void tell_effects(Output& out, const StudyTable& table, const StudyEffects& effe
     }
   }
   out.show(shown);
-  if (several)
-    if (const std::string idle = without_effect(table, effects); !idle.empty())
-      out.say(fmt::format("No answer depends on {}.", idle));
+  std::set<std::string> said_of_all;
+  for (std::size_t m = 0; m < table.models.size(); ++m) said_of_all.insert(without_effect(table, effects, m));
+  for (std::size_t m = 0; m < table.models.size(); ++m)
+    if (const std::string idle = without_effect(table, effects, m); !idle.empty()) {
+      if (said_of_all.size() > 1) out.say(fmt::format("No answer of {} depends on {}.", table.models[m], idle));
+      else if (m == 0) out.say(fmt::format("No answer depends on {}.", idle));
+    }
   if (!sensitivity.rows.empty()) out.write("sensitivity.csv", sensitivity.csv());
 }
 
@@ -304,8 +334,11 @@ post::Figure tornado(const StudyTable& table, const StudyEffects& effects, const
   const auto columns = table.design.columns();
   constexpr std::size_t most = 12;
   const int bars = int(std::min(most, effects.columns.size()));
+  const bool means =
+      std::ranges::any_of(which, [&](std::size_t s) { return effects.of[s] && effects.of[s]->full_factorial; });
   post::Figure figure{
-      .title = "mean answer at a parameter's lowest and at its highest value, over the values of the others",
+      .title = means ? "mean of the answers at a parameter's lowest and at its highest value"
+                     : "a curve fitted to all points, at a parameter's lowest and highest value: no single answers",
       .columns = 2,
       .panel_width = 760,
       .panel_height = 130 + 26 * bars};
@@ -318,7 +351,9 @@ post::Figure tornado(const StudyTable& table, const StudyEffects& effects, const
         high{.label = "highest value", .style = "filledcurves closed"};
     for (int k = 0; k < bars; ++k) {
       const std::size_t f = e.order[std::size_t(k)];
-      panel.y_names.push_back(spoken_column(columns[effects.columns[f]]));
+      const bool idle = effects.idle[table.series[s].model][f];
+      panel.y_names.push_back(spoken_column(columns[effects.columns[f]]) + (idle ? ": no effect" : ""));
+      if (idle) continue;
       // The bar of the highest value is narrower: both are seen where both ends lie on one side.
       for (const auto& [side, value, half] :
            {std::tuple{&low, e.factors[f].at_low, 0.32}, {&high, e.factors[f].at_high, 0.2}}) {

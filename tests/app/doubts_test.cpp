@@ -45,6 +45,67 @@ TEST(Doubts, AJumpOverTheWantedValueIsNoSolution) {
   }
 }
 
+/// One branch a layer knows its losses at one frequency: far from the measured temperature it predicts no speed.
+TEST(Doubts, AColdBallOfOneBranchIsNoPrediction) {
+  const std::string check = "check driver-toe --set ball.temperature.now_C=";
+  EXPECT_NE(command(check + "3").text.find("# in doubt: [ball.temperature] a layer with one Maxwell branch"),
+            std::string::npos)
+      << command(check + "3").text;
+  EXPECT_EQ(command(check + "24").text.find("Maxwell branch"), std::string::npos);
+}
+
+/// A sphere on an elastic plate is solved as any other blow: its penetration is doubted.
+TEST(Doubts, AStudyOfAPlateTellsThePenetration) {
+  const fs::path dir = fresh_directory("doubts_plate");
+  const std::string text = R"(kind = "study"
+models = ["fe-free-body"]
+outputs = ["normal_restitution"]
+figures = false
+accuracy = "look"
+[[axis]]
+key = "contact.penalty"
+values = [5, 2000]
+[delivery]
+club_speed_mps = 3.9
+[head]
+mass_kg = inf
+[ball]
+mass_kg = 0.2618e-3
+radius_mm = 2.5
+[[ball.layers]]
+law = "linear"
+young_GPa = 380
+poisson = 0.23
+[plate]
+young_GPa = 70
+poisson = 0.25
+[contact]
+face_friction = 0.09
+)";
+  write(dir / "case.toml", text);
+  expect_refused(command("check " + dir.string() +
+                         " --set head.mass_kg=0.2 --set 'head.cg_mm=[-35,0,0]' --set "
+                         "'head.inertia_kg_m2=[[3.7e-4,0,0],[0,2.9e-4,0],[0,0,4.8e-4]]'"),
+                 "head.mass_kg: 0.2 kg beside [plate], which is a wall");
+  expect_refused(command("check " + dir.string() + " --set plate.young_GPa=380 --set plate.poisson=0.23"),
+                 "plate.young_GPa: elastic plate: like bodies");
+  const Outcome o = command("run " + dir.string() + " --quiet --out " + (dir / "out").string());
+  ASSERT_EQ(o.status, 0) << o.text;
+  EXPECT_NE(o.text.find("1 of 2 points: fe-free-body: the penetration, of the compression, is above 0.02"),
+            std::string::npos)
+      << o.text;
+}
+
+/// Finite elements take the friction of a set alone: where the case states it no set is asked for.
+TEST(Doubts, NoSetIsAskedForThatNobodyReads) {
+  const std::string check =
+      "check driver-toe --set 'models=[\"fe-free-body\"]' --set delivery.dynamic_loft_deg=70 --set "
+      "delivery.attack_angle_deg=0 --set ball.extrapolate=true";
+  expect_refused(command(check), "say which by `reduced`");
+  const Outcome o = command(check + " --set contact.face_friction=0.3");
+  EXPECT_EQ(o.status, 0) << o.text;
+}
+
 TEST(Doubts, AreSaidByAQuietRunToo) {
   const fs::path dir = fresh_directory("doubts_quiet");
   write(dir / "blow/case.toml", kEccentricBlow);

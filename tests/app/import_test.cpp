@@ -845,6 +845,44 @@ TEST(Import, KeptNumbersWithADecimalCommaAreNumbers) {
   EXPECT_NE(test::content(dir / "case" / "shots.csv").find("01.11.2025,\"21,5\","), std::string::npos);
 }
 
+/// What is kept aside is read by other programs, too.
+TEST(Import, KeptFileHasDecimalPoints) {
+  const fs::path dir = test::fresh_directory("import_kept_point");
+  const auto o =
+      import_text(dir,
+                  "Club;Ball Speed (mph);Club Speed (mph);Launch Angle;Spin Rate;Carry (yd);Tempo;Day\n"
+                  "7i;115,1;82,0;16,4;6400;163,4;0,85;01.11.2025\n7i;116,2;82,1;16,1;6500;165,0;0,9;01.11.2025\n");
+  ASSERT_EQ(o.status, 0) << o.text;
+  const post::Sheet kept = post::read_csv(dir / "case" / "kept.csv");
+  const auto column = [&](const std::string& name) {
+    const auto at = std::ranges::find(kept.names, name);
+    return at == kept.names.end() ? std::vector<std::string>{} : kept.columns[std::size_t(at - kept.names.begin())];
+  };
+  EXPECT_EQ(column("Carry (yd)"), (std::vector<std::string>{"163.4", "165.0"}));
+  EXPECT_EQ(column("Tempo"), (std::vector<std::string>{"0.85", "0.9"}));
+}
+
+/// Shots that no blow makes are imported, counted and named.
+TEST(Import, AShotThatNoBlowMakesIsDoubted) {
+  const fs::path dir = test::fresh_directory("import_implausible");
+  std::string text = "Club,Ball Speed (mph),Club Speed (mph),Launch Angle,Spin Rate,Carry (yd)\n";
+  for (int i = 0; i < 12; ++i)
+    text +=
+        fmt::format("7i,{},82,16,{},{}\n", i == 4 ? 140 : 115 + 0.1 * i, i == 5 ? 30000 : 6400, i == 6 ? -163 : 163);
+  const auto o = import_text(dir, text);
+  ASSERT_EQ(o.status, 0) << o.text;
+  EXPECT_EQ(imported_shots(dir).rows(), 12u);
+  EXPECT_NE(o.text.find("in doubt: 1 of 12 shots: ball speed over club speed is 1.707 at the worst"), std::string::npos)
+      << o.text;
+  EXPECT_NE(o.text.find("shots.csv:6; they stay in"), std::string::npos) << o.text;
+  EXPECT_NE(o.text.find("spin rate is 3e+04 rpm"), std::string::npos) << o.text;
+  EXPECT_NE(o.text.find("carry is -149 m at the worst"), std::string::npos) << o.text;
+  EXPECT_NE(o.text.find("kept.csv:8"), std::string::npos) << o.text;
+  const auto checked = command("check '" + (dir / "case").string() + "'");
+  EXPECT_NE(checked.text.find("# in doubt: [data] 1 of 12 shots: ball speed over club speed"), std::string::npos)
+      << checked.text;
+}
+
 TEST(Import, ObjectsOfValueAndUnitAreCells) {
   const fs::path dir = test::fresh_directory("import_value_unit");
   const auto shot = [](double ball) {

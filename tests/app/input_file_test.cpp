@@ -53,8 +53,13 @@ TEST(InputFile, MeasuredDataThatAreNotHereAreSkipped) {
   const fs::path dir = fresh_directory("not_here");
   write(dir / "case.toml", loop_of("trackman_driver/shots.csv"));
   setenv("HOSEL_DATA", (dir / "nowhere").c_str(), 1);
+  const Outcome checked = command("check " + dir.string());
   const Outcome o = command("run " + dir.string() + " --out " + (dir / "out").string());
   unsetenv("HOSEL_DATA");
+  EXPECT_EQ(checked.status, 0) << checked.text;
+  EXPECT_NE(checked.text.find("# a run has SKIPPED what needs it: "), std::string::npos) << checked.text;
+  EXPECT_NE(checked.text.find("nowhere/trackman_driver/shots.csv is not there; HOSEL_DATA"), std::string::npos)
+      << checked.text;
   EXPECT_EQ(o.status, 0) << o.text;
   EXPECT_NE(o.text.find("SKIPPED"), std::string::npos) << o.text;
 }

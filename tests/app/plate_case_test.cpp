@@ -56,7 +56,13 @@ TEST(PlateCase, OutlinesAreRefusedWithTheirLine) {
 TEST(PlateCase, KeysAreRefusedByName) {
   refused("thickness = {value_mm = 2.8}\nmaterial = 'wood'\n", "", "face.plate.material");
   refused("thickness = {value_mm = 2.8, centre_mm = 3}\n", "", "face.plate.thickness.centre_mm");
-  refused("thickness = {map = 'rings', share = [0.5, 0.2], value_mm = [2, 3]}\n", "", "must ascend");
+  refused("thickness = {map = 'rings', share = [0.5, 0.2], value_mm = [2, 3]}\n", "",
+          "face.plate.thickness.share: the stations of rings must ascend");
+  refused("thickness = {value_mm = 2.8}\n[places]\nhigh_mm = []\n", "", "places.high_mm: name at least one place");
+  refused("thickness = {value_mm = 40}\n", "",
+          "face.plate.thickness: the face weighs 627 g and is part of a head of 200 g");
+  refused("thickness = {value_mm = 2.8}\n[face]\nname = 'modern-driver'\n", "",
+          "face.name: either a face of the library");
   refused("thickness = {value_mm = 2.8}\nmaterial = 'own'\n", "", "young");
 }
 
@@ -121,6 +127,20 @@ TEST(PlateCase, TheFaceIsJudgedByTheRulesAndByItsYieldStrength) {
   ASSERT_LT(other["largest_characteristic_time_us"].get<double>(), 250) << thick;
   EXPECT_NE(thick.find("this face passes the rules' test"), std::string::npos) << thick;
   EXPECT_EQ(thick.find("yield strength"), std::string::npos) << thick;
+}
+
+/// A soft contact lets the ball into the face: said as of any other face.
+TEST(PlateCase, APenetrationIsDoubted) {
+  const fs::path dir = fresh_directory("plate_soft_contact");
+  write(dir / "case.toml",
+        kCase + "thickness = {value_mm = 2.8}\n[places]\ntoe_mm = [0]\nhigh_mm = [0]\n[contact]\npenalty = 5\n");
+  const Outcome o = command("run " + dir.string() +
+                            " --quiet --set numerical_error=false --set figures=false --set vtk=false --out " +
+                            (dir / "out").string());
+  ASSERT_EQ(o.status, 0) << o.text;
+  EXPECT_NE(o.text.find("1 of 1 blow; the worst, at toe 0, high 0 mm: the penetration, of the compression, is"),
+            std::string::npos)
+      << o.text;
 }
 
 TEST(PlateCase, ABallBesideTheFaceIsDoubted) {

@@ -61,6 +61,20 @@ INSTANTIATE_TEST_SUITE_P(
         Nonsense{"article", "--set delivery.dynamic_loft_mps=1", "is a speed, expected an angle"}),
     [](const auto& info) { return std::string(info.param.name); });
 
+TEST(Plausible, PoundsAndInchesAreUnits) {
+  const fs::path dir = fresh_directory("pounds");
+  write(dir / "case.toml", kEccentricBlow);
+  const auto ball_speed = [&](const std::string& sets) {
+    const Outcome o = command("run " + dir.string() + " --quiet --force --out " + (dir / "out").string() + sets);
+    EXPECT_EQ(o.status, 0) << o.text;
+    return nlohmann::json::parse(content(dir / "out/summary.json"))["models"]["rigid-eccentric"]["ball_speed_mps"]
+        .get<double>();
+  };
+  EXPECT_NEAR(ball_speed(" --set delivery.impact_toe_in=0.5 --set head.mass_oz=7"),
+              ball_speed(" --set delivery.impact_toe_mm=12.7 --set head.mass_g=198.446662"), 1e-6);
+  expect_refused(command("check " + dir.string() + " --set delivery.impact_toe_lb=1"), "is a mass, expected a length");
+}
+
 TEST(Plausible, MissingTableIsNamedWithoutColons) {
   const fs::path dir = fresh_directory("grammar");
   write(dir / "case.toml", "kind = \"impact\"\nmodels = [\"rigid-planar\"]\n");

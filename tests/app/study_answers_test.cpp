@@ -384,6 +384,44 @@ TEST(StudyAnswers, SaysWhatChangesNoAnswer) {
   EXPECT_EQ(together.text.find("No answer depends on"), std::string::npos) << together.text;
 }
 
+/// Where every point of a sample differs in all parameters, each that looks idle is changed alone.
+TEST(StudyAnswers, SaysWhatChangesNoAnswerOfASample) {
+  const fs::path dir = fresh_directory("study_idle_sample");
+  const auto said = [&](const std::string& key, const std::string& models) {
+    std::string text = study("",
+                             "[sample]\npoints = 30\nseed = 3\n[[axis]]\nkey = \"delivery.club_speed_mps\"\nrange = "
+                             "[40, 50]\n[[axis]]\nkey = \"" +
+                                 key + "\"\nrange = [0.2, 0.3]\n");
+    text.replace(text.find("\"rigid-eccentric\""), 17, models);
+    const Outcome o = run(dir, text);
+    EXPECT_EQ(o.status, 0) << o.text;
+    EXPECT_NE(o.text.find("goes most with club speed"), std::string::npos) << o.text;
+    return o.text;
+  };
+  EXPECT_NE(said("contact.face_friction", "\"rigid-eccentric\"").find("No answer depends on face friction.\n"),
+            std::string::npos);
+  EXPECT_NE(content(dir / "out/figures/tornado.gp").find("face friction: no effect"), std::string::npos);
+  EXPECT_NE(content(dir / "out/figures/tornado.gp").find("a curve fitted to all points"), std::string::npos);
+  EXPECT_EQ(said("head.mass_kg", "\"rigid-eccentric\"").find("No answer"), std::string::npos);
+  // What one model reads and the other does not.
+  const std::string two = said("hertz_maw.friction", "\"rigid-eccentric\", \"hertz-maw\"");
+  EXPECT_NE(two.find("No answer of rigid-eccentric depends on friction.\n"), std::string::npos) << two;
+  EXPECT_EQ(two.find("No answer of hertz-maw"), std::string::npos) << two;
+}
+
+/// A value that the case refuses is named where the design has it.
+TEST(StudyAnswers, ARefusedValueIsSaidWithItsLine) {
+  const std::string speed = "[[axis]]\nkey = \"delivery.club_speed_mps\"\n";
+  refused(study("", speed + "values = [45, 4500]\n"),
+          "case.toml:6: axis[1].values: delivery.club_speed_mps: 4500 is out of range");
+  refused(study("", speed + "range = [45, 4500]\ncount = 3\n"),
+          "case.toml:6: axis[1].range: delivery.club_speed_mps: ");
+  refused(study("", "[sample]\npoints = 4\nseed = 1\n" + speed + "range = [4500, 4600]\n"),
+          "case.toml:9: axis[1].range: delivery.club_speed_mps: ");
+  refused(study("", "[[variant]]\nname = \"a\"\nset = [\"head.mass_kg=20\"]\n"),
+          "case.toml:6: variant[1].set: head.mass_kg: 20 is out of range");
+}
+
 /// A few scattered points over a valley: lines predict none of it, and no parameter is named.
 TEST(StudyAnswers, NamesNoParameterThatPredictsNothing) {
   const fs::path dir = fresh_directory("study_scattered");

@@ -809,6 +809,8 @@ TEST(Study, RowsBringKeysAndMeasuredValues) {
                 .find("point,model,row,delivery.club_speed_mps,delivery.dynamic_loft_deg,ball_speed_mps,error\n"
                       "0,stick-slip,slow,30,20,"),
             std::string::npos);
+  write(dir / "blows.csv", "name;delivery.club_speed_mps;delivery.dynamic_loft_deg\nslow;30;20\n");
+  expect_refused(command("check " + dir.string()), "blows.csv:1: cells are separated by semicolons here");
   write(dir / "blows.csv", "name,delivery.club_sped_mps\na,30\n");
   const Outcome bad = command("run " + dir.string() + " --quiet --out " + out + "-bad");
   expect_refused(bad, "did you mean");

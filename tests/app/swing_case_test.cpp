@@ -123,6 +123,32 @@ TEST(SwingCase, RunsAndWritesItsHistory) {
         << name;
   EXPECT_NE(page.find("How well it was solved"), std::string::npos);
   EXPECT_NE(page.find("<td>time steps<td>40<"), std::string::npos) << "0.2 s at 5 ms";
+  EXPECT_NE(page.find("moved by steps twice as long"), std::string::npos);
+}
+
+/// What is said of the time steps' error is the difference between two swings.
+TEST(SwingCase, TheErrorOfTheTimeStepsIsTold) {
+  const auto dir = fresh_directory("swing_steps");
+  std::ofstream(dir / "case.toml") << kCase;
+  std::ofstream(dir / "grip.csv") << euler_motion();
+  const auto told = [&](const std::string& step) {
+    const Outcome o = command("run " + dir.string() + " --force --quiet --set solution.step_ms=" + step + " --out " +
+                              (dir / "out").string());
+    EXPECT_EQ(o.status, 0) << o.text;
+    return nlohmann::json::parse(content(dir / "out/summary.json"));
+  };
+  const auto fine = told("5"), coarse = told("10");
+  const double lead =
+      std::abs(fine.at("at_end").at("lead_mm").get<double>() - coarse.at("at_end").at("lead_mm").get<double>());
+  ASSERT_GT(lead, 1e-6);
+  EXPECT_NEAR(fine.at("numerical_error").at("lead_mm").get<double>(), lead, 1e-9 + 1e-6 * lead);
+  EXPECT_GT(coarse.at("numerical_error").at("lead_mm").get<double>(), lead);
+  EXPECT_FALSE(nlohmann::json::parse([&] {
+                 command("run " + dir.string() + " --force --quiet --set numerical_error=false --out " +
+                         (dir / "out").string());
+                 return content(dir / "out/summary.json");
+               }())
+                   .contains("numerical_error"));
 }
 
 TEST(SwingCase, ThePageOfIdaSaysThatItKeepsNoEnergyBalance) {

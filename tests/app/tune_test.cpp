@@ -429,6 +429,31 @@ TEST(Tune, AStartOutsideItsBoundsIsRefused) {
       << said;
 }
 
+/// The case's own value is the first guess: where it is none, a guess is asked for.
+TEST(Tune, ACaseOutsideTheBoundsAsksForAStart) {
+  const std::string mass = "[[parameters]]\nname = \"head_mass\"\nmin_g = 180\nmax_g = 220\n";  // the head has 260 g
+  const std::string said = refused(chosen_shots("tune_default_start", mass));
+  EXPECT_NE(
+      said.find("parameters[2].name: 'head_mass' is 0.26 in the case, outside the bounds of the fit (0.18 to 0.22 "
+                "kg): state a `start`"),
+      std::string::npos)
+      << said;
+  const auto stated = chosen_shots("tune_stated_start", mass + "start_g = 200\n");
+  EXPECT_EQ(test::command("check " + stated.string()).status, 0);
+}
+
+/// A ball that is faster than any blow makes it stays in, and its row is named.
+TEST(Tune, AShotThatNoBlowMakesIsDoubted) {
+  const auto d = chosen_shots("tune_implausible", "");
+  std::ofstream(d / "shots.csv", std::ios::app) << "13,38,-2,20,76,2,hard\n14,38,-2,88,50,2,hard\n";
+  const nlohmann::json s = run(d);
+  ASSERT_EQ(s["rows"]["train"].get<int>() + s["rows"]["test"].get<int>(), 14);
+  const std::string doubts = s["doubts"].dump();
+  EXPECT_NE(doubts.find("1 of 14 shots: ball speed over club speed is 2 at the worst"), std::string::npos) << doubts;
+  EXPECT_NE(doubts.find("1 of 14 shots: dynamic loft is 88 deg at the worst"), std::string::npos) << doubts;
+  EXPECT_NE(doubts.find("shots.csv:14"), std::string::npos) << doubts;
+}
+
 TEST(Tune, AllRowsMayBeFitted) {
   const auto s = run(chosen_shots("tune_all", "[split]\ntrain_fraction = 1\n"));
   ASSERT_EQ(s["rows"]["train"], 12);

@@ -39,8 +39,12 @@ TEST(Csv, AnotherSeparatorThanACommaIsNamed) {
     } catch (const DataError& e) { return std::string(e.what()); }
     return std::string();
   };
-  EXPECT_NE(refused("a;b\n1,5;2\n").find("2 cells where the header has 1: a comma is what separates cells"),
-            std::string::npos);
+  EXPECT_NE(
+      refused("a;b\n1,5;2\n").find("t:1: cells are separated by semicolons here: a comma is what separates cells"),
+      std::string::npos);
+  // Whole numbers would stand in one column of that name.
+  EXPECT_NE(refused("a;b\n1;2\n").find("separated by semicolons"), std::string::npos);
+  EXPECT_NE(refused("a\tb\n1\t2\n").find("separated by tabs"), std::string::npos);
   EXPECT_EQ(refused("a\n1,5\n").find("a comma is what"), std::string::npos);
 }
 
