@@ -1,6 +1,7 @@
 #include "loop/select.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace hosel::loop {
 namespace {
@@ -72,7 +73,7 @@ Selection select(const Problem& problem, const std::vector<const Parametrisation
     if (!(map.signal > rules.remaining_signal)) return false;
     if (map.beside > rules.remaining_signal) return true;
     const std::optional<Remainder> left = problem.remainder(f);
-    return left && left->fall() > rules.gain;
+    return left && left->fall() > rules.gain * std::pow(map.signal / map.beside, 2);  // in units of that scatter
   };
   s.structured = s.before.p < rules.gate || signals(s.before, search.base) ||
                  search.threshold_gain() > 2 * rules.further_gain;
