@@ -250,11 +250,11 @@ std::string page(const LoopResult& r, const Shots& table) {
         ratio(b.contact, b.contact_freedom), ratio(a.contact, a.contact_freedom), ratio(b.inertia, b.inertia_freedom),
         ratio(a.inertia, a.inertia_freedom));
     if (const int freedom = b.contact_freedom + b.inertia_freedom;
-        freedom > 0 && cdf(complement(boost::math::chi_squared(freedom), b.contact + b.inertia)) < kTold)
+        r.verdict != Verdict::no_residual && freedom > 0 &&
+        cdf(complement(boost::math::chi_squared(freedom), b.contact + b.inertia)) < kTold)
       s += fmt::format(
           "<p>The base model's error is larger than the noise. Of that excess {:.0f} % is motion of the head or "
-          "inertia, "
-          "whatever the contact law.</p>",
+          "inertia, whatever the contact law.</p>",
           100 * b.inertia_share());
   }
 

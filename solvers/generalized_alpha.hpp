@@ -70,7 +70,7 @@ class GeneralizedAlpha {
   /// One accepted step, no further than `end`; shortened on failure of Newton. Throws
   /// NonConvergence when it would fall below step_min. Returns the size of the step [s].
   double advance(double end);
-  /// Tries one step of exactly `h`; on failure nothing has changed.
+  /// Tries one step of exactly `h`; on failure nothing has changed but the multipliers that contact begins with.
   NewtonReport step(double h);
 
   const fem::State& state() const { return state_; }

@@ -84,11 +84,10 @@ NewtonReport Newton::solve(const NewtonProblem& problem) {
       }
       before = report.residual;
       // A tangent in the axes of the bodies hardly changes while they turn: that of one attitude serves another.
-      Mat3 turned = Mat3::Identity();
-      if (problem.attitude) turned = problem.attitude() * attitude_.transpose();
-      turn(vectors_, turned.transpose(), r);
+      const Mat3 turned = problem.attitude ? Mat3(problem.attitude() * attitude_.transpose()) : Mat3::Identity();
+      if (problem.attitude) turn(vectors_, turned.transpose(), r);
       Vector step = -factors_.solve(r);
-      turn(vectors_, turned, step);
+      if (problem.attitude) turn(vectors_, turned, step);
       increment = increments_.measure(step);
       problem.advance(step);
     }

@@ -547,7 +547,7 @@ std::optional<Location> ShotProblem::two_populations(const Selection& s) const {
       for (std::size_t i = 0; i < rows.size(); ++i)
         same += (g.of_row[std::size_t(inputs_.row_of[std::size_t(rows[i])])] == int(k)) == bool(best->second[i]);
       if (std::max(same, double(rows.size()) - same) > alike * double(rows.size()))
-        apart = fmt::format("nearly {} '{}' and the others", c.name, g.name[k]);
+        apart = fmt::format("nearly those of {} '{}', and the others", c.name, g.name[k]);
     }
   }
   return Location{

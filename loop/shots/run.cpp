@@ -45,7 +45,10 @@ ShotCase without_computed(const ShotCase& given, const std::vector<DerivedColumn
   for (const DerivedColumn& d : derived)
     for (Column& column : c.shots.columns)
       if (column.name == d.column && column.role == Role::other &&
-          std::ranges::any_of(d.from, [&](const auto& name) { return c.shots.find(name)->role == Role::output; }))
+          std::ranges::any_of(d.from, [&](const std::string& name) {
+            const Column* from = c.shots.find(name);
+            return from && from->role == Role::output;
+          }))
         column.role = Role::bookkeeping;
   return c;
 }

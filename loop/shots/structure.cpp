@@ -376,13 +376,16 @@ StructureMap structure(const Problem& problem, const Whitened& view, const Fit& 
   map.p = (1.0 + double(largest.end() - std::ranges::lower_bound(largest, top - 1e-5))) /
           (1.0 + double(largest.size()));
   std::ranges::stable_sort(map.findings, std::ranges::greater{}, [](const Finding& f) { return std::abs(f.signal); });
+  Eigen::VectorXd square = Eigen::VectorXd::Zero(m), values = square;
+  for (int i = 0; i < n; ++i)
+    for (int c = 0; c < m; ++c)
+      if (const double x = z[std::ptrdiff_t(i) * m + c]; x != 0)
+        square[c] += weights[i] * x * x, values[c] += weights[i];
+  // What the channel, or all of them, scatters without the finding; at least what is declared.
   const auto scatter_beside = [&](const Finding& f) {
-    double sum = 0, values = 0;
-    for (int i = 0; i < n; ++i)
-      for (int c = 0; c < m; ++c)
-        if (const double x = z[std::ptrdiff_t(i) * m + c]; (f.channel < 0 || f.channel == c) && x != 0)
-          sum += weights[i] * x * x, values += weights[i];
-    return std::sqrt(std::max(1.0, (sum - f.signal * f.signal) / std::max(1.0, values - 1)));
+    const double whole = f.channel < 0 ? square.sum() : square[f.channel],
+                 count = f.channel < 0 ? values.sum() : values[f.channel];
+    return std::sqrt(std::max(1.0, (whole - f.signal * f.signal) / std::max(1.0, count - 1)));
   };
   for (const Finding& f : map.findings) {
     if (f.kind == kGain || !known(f)) continue;

@@ -1712,6 +1712,52 @@ TEST_F(Loop, HeadsOfTwoCentresOfGravityAccuseNoColumn) {
   }
 }
 
+/// What a page says of the base's error does not contradict the verdict.
+TEST_F(Loop, NoExcessIsToldWhereNothingRemains) {
+  constexpr const char* excess = "error is larger than the noise";
+  const ShotCase off = case_of(csv({.tangential = 0.25}));
+  EXPECT_NE(page(run(off), off.shots).find(excess), std::string::npos);
+  ShotCase little = case_of(csv({}));
+  for (auto& [column, sd] : little.noise) sd *= 0.88;  // too little to refute it, enough for a test of the sum
+  const LoopResult none = run(little);
+  ASSERT_EQ(name(none.verdict), "no-residual") << sentence(none);
+  ASSERT_TRUE(none.balance_before);
+  ASSERT_GT(none.balance_before->contact + none.balance_before->inertia,
+            1.2 * (none.balance_before->contact_freedom + none.balance_before->inertia_freedom));
+  EXPECT_EQ(page(none, little.shots).find(excess), std::string::npos);
+}
+
+/// A reading that is a multiple is off in the mean before it follows anything: what says as much as a name is a
+/// constant.
+TEST_F(Loop, AFunctionThatHardlyVariesIsCalledAConstant) {
+  const LoopResult r = run(case_of(changed(csv({}), "", [](int, auto& cells) {
+    cells[kBallSpeed] = fmt::format("{:.2f}", 0.95 * std::stod(cells[kBallSpeed]));
+  })));
+  ASSERT_FALSE(r.functions.empty()) << sentence(r);
+  for (const Mechanism& m : r.functions) EXPECT_EQ(m.along, "constant") << m.acts;
+}
+
+/// Where a column is wrong, that comes before anything that is measured anew.
+TEST_F(Loop, AWrongColumnIsMendedFirst) {
+  const LoopResult r = run(case_of(changed(csv({}), "", [](int, auto& cells) {
+    cells[kClubSpeed] = fmt::format("{:.2f}", std::stod(cells[kClubSpeed]) / kMpsPerMph);
+  })));
+  ASSERT_EQ(r.columns.size(), 1U) << sentence(r);
+  EXPECT_EQ(r.next.text.find("First mend"), 0U) << r.next.text;
+  EXPECT_NE(r.next.text.find("club_speed_mps reads like mph"), std::string::npos) << r.next.text;
+}
+
+/// A drift from the first shot has a mean, which other names explain: what is seen of it is the part about the middle.
+TEST_F(Loop, TheSmallestDriftIsThatOfWhatChangesInTheSession) {
+  const LoopResult r = run(case_of(csv({.shots = 300})));
+  const auto drift = std::ranges::find(r.minimum_detectable, "session-drift", &Detectable::effect);
+  ASSERT_NE(drift, r.minimum_detectable.end());
+  ASSERT_EQ(drift->parameter, "ball_speed_per_session");
+  // 0.25 m/s of noise, a line of places 0 to 1 in the session: sqrt(n / 12) standard deviations for each.
+  const double rows = r.train;
+  EXPECT_NEAR(drift->value, (std::sqrt(Rules{}.gain) + 1.3) * 0.25 / std::sqrt(rows / 12), 0.1 * drift->value);
+}
+
 /// Spin that follows the square of the path has no name. The rows of the largest paths are its best evidence, and no
 /// slips.
 TEST_F(Loop, RowsThatShowWhatHasNoNameAreNoSlips) {
@@ -1789,6 +1835,23 @@ TEST_F(Loop, ScatterThatTooFewShotsCannotRefuteIsNotCalledNoise) {
       EXPECT_EQ(r.unexplained.front().channel, "azimuth_deg");
     }
   }
+}
+
+/// A column that parts two populations is said beside them.
+TEST_F(Loop, AMixtureThatAColumnPartsIsSaidSo) {
+  const auto mixture = [&](bool recorded) {
+    const LoopResult r = run(case_of(changed(csv({.shots = 120}), ",ball", [&](int row, auto& cells) {
+      // The order of the balls has no period.
+      const bool other = (row * row / 7) % 2;
+      cells[kBallSpeed] = fmt::format("{:.2f}", std::stod(cells[kBallSpeed]) + (other ? 1.75 : 0));
+      cells.push_back(recorded && other ? "b" : "a");
+    })));
+    for (const Location& l : r.unexplained)
+      if (l.detail.find("mixture") != std::string::npos) return l.detail;
+    return std::string("none");
+  };
+  EXPECT_NE(mixture(true).find("nearly those of ball '"), std::string::npos) << mixture(true);
+  EXPECT_NE(mixture(false).find("no column tells apart"), std::string::npos) << mixture(false);
 }
 
 TEST_F(Loop, TwoBallsAreAMixture) {
