@@ -58,7 +58,7 @@ std::string number(double x) { return std::isfinite(x) ? fmt::format("{:.4g}", x
 std::pair<double, double> interval(double x, int n) {
   if (n < 3) return {x, x};
   const boost::math::chi_squared law(n);
-  return {x * std::sqrt(n / quantile(law, 0.975)), x * std::sqrt(n / quantile(law, 0.025))};
+  return {x * std::sqrt(n / quantile(law, 1 - kTold / 2)), x * std::sqrt(n / quantile(law, kTold / 2))};
 }
 
 std::string rms(double x, int n) {
@@ -346,7 +346,7 @@ std::string page(const LoopResult& r, const Shots& table) {
     for (const Location& l : r.unexplained)
       if (l.channel.empty() || l.regressor.empty())
         s += fmt::format("<li>{}{}", escape_html(l.channel.empty() ? "" : l.channel + ": "), escape_html(l.detail));
-      else if (l.regressor == "constant") s += fmt::format("<li>{} is off in the mean", escape_html(l.channel));
+      else if (l.regressor == "constant") s += "<li>" + escape_html(off_in_the_mean(l, r));
       else
         s += fmt::format("<li>{} against {} <small>({})</small>", escape_html(l.channel), escape_html(l.regressor),
                          escape_html(l.detail));

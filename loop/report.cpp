@@ -249,7 +249,7 @@ std::string beside_noise(const LoopResult& r) {
   if (!worst) return "";
   // The root mean square of few values is beyond that by chance.
   const double chance =
-      std::sqrt(quantile(boost::math::chi_squared(worst->after.holdout), 0.975) / worst->after.holdout);
+      std::sqrt(quantile(boost::math::chi_squared(worst->after.holdout), 1 - kTold / 2) / worst->after.holdout);
   if (ratio(*worst) <= std::max(Rules{}.scatter_ratio, chance)) return " The held-out error is within the noise.";
   const SplitName name = split_unit(worst->name);
   const std::string unit = name.unit ? " " + post::symbol(name.unit->suffix) : "";
@@ -259,16 +259,23 @@ std::string beside_noise(const LoopResult& r) {
 }
 
 /// What stands in the way of a name, in a sentence.
-std::string remains(const Location& l) {
+std::string remains(const Location& l, const LoopResult& r) {
   if (l.rival) return fmt::format("No effect is named: {}.", l.detail);
   if (l.regressor.empty()) return fmt::format("Something remains that no candidate explains: {}.", l.detail);
   std::string what = fmt::format("{} against {} ({})", l.channel, l.regressor, l.detail);
   if (l.channel.empty()) what = fmt::format("{}: {}", l.regressor, l.detail);
-  else if (l.regressor == "constant") what = l.channel + " is off in the mean";
+  else if (l.regressor == "constant") what = off_in_the_mean(l, r);
   return fmt::format("Structure remains that no candidate explains: {}.", what);
 }
 
 }  // namespace
+
+std::string off_in_the_mean(const Location& l, const LoopResult& r) {
+  const auto c = std::ranges::find(r.channels, l.channel, &ChannelResult::name);
+  const double bias = c == r.channels.end() ? kNaN : c->after.holdout_bias;
+  return std::isfinite(bias) ? fmt::format("{} is off in the mean (held out by {:.3g})", l.channel, std::abs(bias))
+                             : l.channel + " is off in the mean";
+}
 
 std::vector<AdoptedSize> adopted_sizes(const LoopResult& r) {
   std::vector<AdoptedSize> out;
@@ -312,7 +319,7 @@ std::string sentence(const LoopResult& r) {
         return fmt::format("A whole column contradicts its header: {}. Mend the file or its header, then run again.",
                            r.columns.front().text);
       std::string s = r.unexplained.empty() ? "Structure remains that no candidate explains."
-                                            : remains(r.unexplained.front());
+                                            : remains(r.unexplained.front(), r);
       if (!r.adopted.empty()) s += fmt::format(" Beyond doubt the model lacked: {}.", list(r.adopted));
       return s + tied;
     }

@@ -23,6 +23,9 @@ struct AdoptedSize {
 std::vector<AdoptedSize> adopted_sizes(const LoopResult& result);
 /// Of what is tied, the effects that the model behind `after` has beside the adopted ones.
 std::vector<std::string> tied_in_after(const LoopResult& result);
+/// Of a place whose regressor is the constant: the channel and by how much it is off on the rows held out.
+std::string off_in_the_mean(const Location& place, const LoopResult& result);
+
 /// The verdict in a sentence.
 std::string sentence(const LoopResult& result);
 /// The body of a page with the figures inline.

@@ -63,9 +63,11 @@ struct Formula {
   double trimmed = 1;    ///< what is left of that without the worst tenth
   double declared = 0;   ///< what the declared noise of its columns makes of it; 0: none declares any
   int rows = 0;
-  int beyond = 0;        ///< rows that miss by more than the column's own last digit and by no more than all rounding
-  double cost = 0;       ///< less is likelier, as a deviance: misfit beyond rounding, terms, and who computes what
-  double direction = 0;  ///< the same between the columns that one relation may be solved for
+  int beyond = 0;   ///< rows that miss by more than the column's own last digit and by no more than all rounding
+  int outside = 0;  ///< rows that miss by more than all last digits together allow, and by no more than four times that
+  bool one_rounds = false;  ///< rounding of one column outweighs that of all others
+  double cost = 0;          ///< less is likelier, as a deviance: misfit beyond rounding, terms, and who computes what
+  double direction = 0;     ///< the same between the columns that one relation may be solved for
   /// A relation that may be solved for any of its columns is of the same form for each.
   enum class Form { linear, powers, other } form = Form::other;
 };
@@ -236,6 +238,9 @@ class Audit {
   /// Rounding alone is likelier than the noise that its columns declare, with or without rounding, beyond chance: a
   /// ball that rolls obeys a relation too, and coarse columns that are measured miss it by little more than rounding.
   static bool rounding_alone(const Formula& f, std::size_t rows, double spread) {
+    // Beside one coarse column the size of the misses says little, since what is measured with less noise than it is
+    // rounded obeys the physics as well. Rounding has an edge, noise has none.
+    if (f.one_rounds && f.outside > kByChance * double(rows)) return false;
     if (!(f.declared > 0)) return true;
     const auto likelihood = [](double deviation, double scatter) {
       return -std::log(scatter) - 0.5 * std::pow(deviation / scatter, 2);
@@ -252,7 +257,7 @@ class Audit {
              Formula& out) const {
     const Source& y = source(target);
     if (rows.empty()) return false;
-    std::vector<double> residual, wobbles, noises, uneven, x(sources_.size());
+    std::vector<double> residual, edges, wobbles, noises, uneven, x(sources_.size());
     for (const Eigen::Index i : rows) {
       for (const int k : from) x[std::size_t(k)] = source(k).x[i];
       residual.push_back(y.x[i] - f(x));
@@ -273,13 +278,15 @@ class Audit {
         return change * change;
       };
       double wobble = std::pow(rounding_deviation(y.resolution), 2), squares = wobble * wobble,
-             noise = y.noise * y.noise;
+             noise = y.noise * y.noise, outermost = 0.5 * y.resolution;
       for (const int k : from) {
         const double by = variance_by(k, rounding_deviation(source(k).resolution));
+        outermost += std::sqrt(3 * by);
         wobble += by;
         squares += by * by;
         noise += variance_by(k, source(k).noise);
       }
+      edges.push_back(outermost);
       wobbles.push_back(wobble);
       noises.push_back(noise);
       // The tails of a sum of roundings: by its kurtosis between those of one of them and of noise.
@@ -288,11 +295,17 @@ class Audit {
     // The typical row: a few rows next to a singularity of f must not excuse the others.
     out.tolerance = std::sqrt(median(std::move(wobbles)));
     out.declared = std::sqrt(median(std::move(noises)));
-    out.trimmed = kTrimmedNoise + (kTrimmedRounding - kTrimmedNoise) * median(std::move(uneven));
+    const double share = median(std::move(uneven));
+    out.trimmed = kTrimmedNoise + (kTrimmedRounding - kTrimmedNoise) * share;
+    out.one_rounds = y.column->role != Role::other && share > 0.8;
     out.from = from;
     // The numbers of the formula are fitted: the edge is not sharper than they are.
-    const double edge = 0.5 * y.resolution + kRoundOff * y.spread +
-                        2 * out.residual * std::sqrt(parameters / double(rows.size()));
+    const double fitted = kRoundOff * y.spread + 2 * out.residual * std::sqrt(parameters / double(rows.size()));
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      const double outermost = edges[i] + fitted, miss = std::abs(residual[i]);
+      out.outside += miss > outermost && miss < 4 * outermost;
+    }
+    const double edge = 0.5 * y.resolution + fitted;
     out.beyond = int(std::ranges::count_if(
         residual, [&](double r) { return std::abs(r) > edge && std::abs(r) < 4 * out.tolerance; }));
     // Within rounding, and rounding itself far below how the column varies: the less so, the fewer numbers are free.
@@ -416,6 +429,7 @@ class Audit {
       // It must hold on the rows that it was fitted to as well: the fence could leave out those that it missed.
       Formula again;
       if (!judge(target, from, int(p), judged, f, out) || !judge(target, from, int(p), fitted, f, again)) return false;
+      out.outside += again.outside;
       if (!(std::hypot(out.residual, again.residual) <
             std::sqrt(2.0) * most_by_rounding(out, rows.size()) * out.tolerance + kRoundOff * y.spread) ||
           !rounding_alone(out, rows.size(), y.spread))

@@ -207,8 +207,8 @@ std::vector<GroupSpread> between_groups(const ShotModel& model, const Shots& sho
                      .unit = of ? std::string(of->suffix) : "1",
                      .groups = int(m.mean.size()),
                      .sd = unit * m.deviation(freedom),
-                     .low = unit * m.deviation(freedom * quantile(chance, 0.975)),
-                     .high = unit * m.deviation(freedom * quantile(chance, 0.025)),
+                     .low = unit * m.deviation(freedom * quantile(chance, 1 - kTold / 2)),
+                     .high = unit * m.deviation(freedom * quantile(chance, kTold / 2)),
                      .p = cdf(complement(chance, m.square_sum(0) / freedom))});
     }
   }

@@ -23,7 +23,7 @@
 namespace hosel::loop {
 namespace {
 
-constexpr std::size_t kMostRows = 240;
+constexpr std::size_t kMostRows = 240, kMostOfSlow = 80;
 constexpr double kSure = 30;        // least fall of the deviance,
 constexpr double kShare = 0.15;     // and share of it
 constexpr double kPartOfRows = 15;  // price of one of some forty parts
@@ -76,6 +76,8 @@ struct Columns::Slip {
   double cost = 0;                ///< what a slip of free size, or an unusual one, must earn
   double deviance = 0;
   double criterion() const { return deviance + cost; }
+  /// Its size is fitted: beside a contact that is fitted too it would say little.
+  bool free() const { return finding == "offset" || finding == "scale" || finding == "level-shift"; }
   bool disputed = false;  ///< physics does as well, which changes where it holds; or every group differs
 };
 
@@ -111,9 +113,11 @@ Columns::Columns(const ShotCase& c) : case_(c) {
   }
   std::vector<Shot> shots;
   for (Eigen::Index i = 0; i < values_.rows(); ++i) shots.push_back(shot(i, values_));
-  model_ = std::make_unique<ShotModel>(quick() ? *c.model : closed_form(), true, std::move(shots), std::move(channels),
-                                       values_.rightCols(std::ptrdiff_t(outputs_.size())));
+  const Eigen::MatrixXd read = values_.rightCols(std::ptrdiff_t(outputs_.size()));
+  if (quick() && !c.direct) companion_ = std::make_unique<ShotModel>(*c.model, false, shots, channels, read);
+  model_ = std::make_unique<ShotModel>(*c.model, true, std::move(shots), std::move(channels), read, c.surrogate);
   estimate_noise();
+  contact_ = contact(values_, noise_);
   as_recorded_ = deviance(values_, noise_, Model{}, {});
   try_constants();
   if (quick()) {
@@ -123,6 +127,8 @@ Columns::Columns(const ShotCase& c) : case_(c) {
   }
   std::ranges::stable_sort(slips_, {}, &Slip::criterion);
 }
+
+bool Columns::quick() const { return case_.direct || (!case_.surrogate && case_.model != &closed_form()); }
 
 void Columns::read() {
   const Shots& shots = case_.shots;
@@ -154,7 +160,7 @@ void Columns::read() {
     }
     if (needed && output) complete.push_back(int(i));
   }
-  rows_ = evenly(complete, kMostRows);
+  rows_ = evenly(complete, case_.direct ? kMostRows : kMostOfSlow);
   const std::size_t n = rows_.size();
   order_ = session_order(shots, rows_);
   if (case_.loft_unknown)
@@ -174,6 +180,7 @@ void Columns::read() {
 
 Shot Columns::shot(Eigen::Index row, const Eigen::MatrixXd& values) const {
   Shot s{.blow = case_.blow, .order = order_[std::size_t(row)]};
+  if (companion_) s.blow.contact = companion_->trial(int(row)).blow.contact;
   if (case_.loft_unknown) s.blow.delivery.dynamic_loft = loft_[std::size_t(row)];
   for (std::size_t k = 0; k < inputs_.size(); ++k) set(s.blow, inputs_[k], values(row, std::ptrdiff_t(k)));
   return s;
@@ -181,6 +188,13 @@ Shot Columns::shot(Eigen::Index row, const Eigen::MatrixXd& values) const {
 
 /// Model minus measured [SI], rows x channels; zero where nothing is measured, NaN where the blow cannot be.
 Eigen::MatrixXd Columns::residuals(const Eigen::MatrixXd& values, const Model& model, const Eigen::VectorXd& p) const {
+  if (!companion_ || model.forms.empty()) return residuals(*model_, values, model, p);
+  return residuals(*model_, values, {}, {}) + residuals(*companion_, values, model, p) -
+         residuals(*companion_, values, {}, {});
+}
+
+Eigen::MatrixXd Columns::residuals(const ShotModel& by, const Eigen::MatrixXd& values, const Model& model,
+                                   const Eigen::VectorXd& p) const {
   const auto m = std::ptrdiff_t(outputs_.size()), first = std::ptrdiff_t(inputs_.size());
   Eigen::MatrixXd r(values.rows(), m);
   Eigen::VectorXd out(m);
@@ -190,7 +204,7 @@ Eigen::MatrixXd Columns::residuals(const Eigen::MatrixXd& values, const Model& m
       const InputQuantity& q = quantity(inputs_[std::size_t(k)]);
       possible = values(i, k) >= q.low && values(i, k) <= q.high;
     }
-    if (!possible || !model_->predict(shot(i, values), -1, model, p.data(), out.data())) {
+    if (!possible || !by.predict(shot(i, values), -1, model, p.data(), out.data())) {
       r.row(i).setConstant(kNaN);
       continue;
     }
@@ -271,6 +285,50 @@ double Columns::deviance(const Eigen::MatrixXd& values, const Eigen::VectorXd& n
   return log_scale(values, W) + losses(residuals(values, model, p), W).sum();
 }
 
+/// The likeliest contact of the ball: as declared, or with another restitution and tangential restitution, which no
+/// case knows well. A column is judged beside it.
+Columns::Contact Columns::contact(const Eigen::MatrixXd& values, const Eigen::VectorXd& noise) const {
+  static const std::array<ContactChange, 3> ball = of_another_ball();
+  static const Eigen::Vector2d largest(0.2, 0.5);
+  const Eigen::MatrixXd W = whitening(values, noise), declared = residuals(values, {}, {});
+  const double scale = log_scale(values, W);
+  Contact out{{}, {}, scale + losses(declared, W).sum()};
+  if (!quick()) return out;
+  const Model model{{&ball[0].form, &ball[1].form}};
+  Eigen::MatrixXd without;
+  if (companion_) without = residuals(*companion_, values, {}, {});
+  const auto at = [&](const Eigen::VectorXd& size) -> Eigen::MatrixXd {
+    if (!companion_) return residuals(*model_, values, model, size);
+    return declared + residuals(*companion_, values, model, size) - without;
+  };
+  const solvers::Loss loss = loss_of_shot(int(W.rows())).uncapped();
+  Eigen::VectorXd size = Eigen::VectorXd::Zero(2);
+  std::array<Eigen::MatrixXd, 2> J;
+  for (int pass = 0; pass < 3; ++pass) {
+    const Eigen::MatrixXd z = at(size) * W.transpose();
+    for (int k = 0; k < 2; ++k) {
+      constexpr double step = 0.01;
+      Eigen::VectorXd there = size;
+      there[k] += step;
+      if (pass == 0) J[std::size_t(k)] = (at(there) * W.transpose() - z) / step;
+    }
+    Eigen::Matrix2d normal = 1e-9 * Eigen::Matrix2d::Identity();
+    Eigen::Vector2d gradient = Eigen::Vector2d::Zero();
+    for (Eigen::Index i = 0; i < z.rows(); ++i) {
+      Eigen::MatrixXd j(z.cols(), 2);
+      j << J[0].row(i).transpose(), J[1].row(i).transpose();
+      if (!z.row(i).allFinite() || !j.allFinite()) continue;
+      const double weight = loss.weight(z.row(i).squaredNorm());
+      normal += weight * j.transpose() * j;
+      gradient += weight * j.transpose() * z.row(i).transpose();
+    }
+    size = (size - normal.inverse() * gradient).cwiseMax(-largest).cwiseMin(largest);
+  }
+  const double value = scale + losses(at(size), W).sum() + 2 * case_.rules.parameter_cost;
+  if (value < out.deviance) out = {model, size, value};
+  return out;
+}
+
 void Columns::estimate_noise() {
   const auto m = std::ptrdiff_t(outputs_.size());
   noise_ = Eigen::VectorXd::Zero(m);
@@ -343,12 +401,19 @@ Eigen::VectorXd Columns::noise_of(const Slip& slip) const {
 bool Columns::tells(const Slip& slip) const {
   const auto x = values_.col(slip.column).array();
   const auto read = x.isFinite().count();
+  if (slip.finding == "scale" && std::size_t(slip.column) < inputs_.size()) {
+    // The answers to a noisy record are those of a narrower one, by the share of noise in its variance and what else
+    // that share makes uncertain.
+    const double share = std::pow(input_noise_[slip.column], 2) / (x - x.mean()).square().mean();
+    if (slip.factor < 1 && slip.factor > 1 - 2 * share) return false;
+  }
   return (read >= kFewestOfRows || read == x.size()) && (slip.factor == 1 || (x.isFinite() && x != 0).any());
 }
 
 void Columns::attempt(Slip slip) {
   if (!tells(slip)) return;
-  slip.deviance = deviance(corrected(slip), noise_of(slip), {}, {});
+  slip.deviance = slip.free() ? deviance(corrected(slip), noise_of(slip), {}, {})
+                              : contact(corrected(slip), noise_of(slip)).deviance;
   // The density of the written numbers.
   for (const int k : {slip.column, slip.second})
     if (slip.member.empty() && k >= int(inputs_.size()))
@@ -388,14 +453,14 @@ void Columns::try_constants() {
 /// The same on a part of the rows, the part that says most: an instrument was set anew in the session.
 void Columns::try_parts(const std::vector<PartOfRows>& parts) {
   const Eigen::MatrixXd W = whitening(values_, noise_);
-  const Eigen::VectorXd recorded = losses(residuals(values_, {}, {}), W);
+  const Eigen::VectorXd recorded = losses(residuals(values_, contact_.model, contact_.size), W);
   std::vector<Slip> on_parts;
   for (const Slip& whole : slips_) {
     if (whole.finding == "swapped" || whole.second >= 0) continue;
     const bool output = whole.column >= int(inputs_.size());
     // Where its noise was estimated, that of the written numbers goes with them. Their density, as for all rows.
     const Eigen::MatrixXd V = whitening(values_, noise_of(whole));
-    Eigen::VectorXd better = recorded - losses(residuals(corrected(whole), {}, {}), V);
+    Eigen::VectorXd better = recorded - losses(residuals(corrected(whole), contact_.model, contact_.size), V);
     const Eigen::VectorXd scale = 2 * (V.diagonal().array() / W.diagonal().array()).log();
     for (Eigen::Index i = 0; i < better.size(); ++i) {
       for (Eigen::Index c = 0; c < scale.size(); ++c)
@@ -407,7 +472,7 @@ void Columns::try_parts(const std::vector<PartOfRows>& parts) {
     best.cost += kPartOfRows;
     for (const PartOfRows& part : parts)
       for (PartOfRows::Side& side : part.sides()) {
-        double deviance = as_recorded_;
+        double deviance = contact_.deviance;
         for (Eigen::Index i = 0; i < better.size(); ++i) deviance -= side.member[std::size_t(i)] ? better[i] : 0;
         if (!(deviance < best.deviance)) continue;
         best.deviance = deviance;
@@ -722,8 +787,8 @@ std::vector<WrongColumn> Columns::contradicted(const std::vector<Fit>& rivals,
   double library = as_recorded_;
   const auto holds = [&](const Slip& s) {
     const bool free = !s.where.empty() || s.finding == "offset" || s.finding == "scale";
-    const double base = as_recorded_ - scale;
-    return as_recorded_ - s.criterion() > std::max(kSure, kShare * base) && library - s.criterion() > case_.rules.tie &&
+    const double recorded = s.free() ? as_recorded_ : contact_.deviance, base = recorded - scale;
+    return recorded - s.criterion() > std::max(kSure, kShare * base) && library - s.criterion() > case_.rules.tie &&
            (!free || s.deviance - scale < kClean * values);
   };
   if (std::ranges::none_of(slips_, holds)) return {};

@@ -34,12 +34,20 @@ class Columns {
  private:
   struct Slip;
   struct PartOfRows;
-  /// The base answers in microseconds itself: else the closed form stands for it, and shows gross slips only.
-  bool quick() const { return case_.direct; }
+  struct Contact {
+    Model model;
+    Eigen::VectorXd size;
+    double deviance = 0;  ///< with the price of its parameters
+  };
+  /// The base answers in microseconds itself: else only gross slips are looked for.
+  bool quick() const;
   void read();
   void estimate_noise();
   Shot shot(Eigen::Index row, const Eigen::MatrixXd& values) const;
   Eigen::MatrixXd residuals(const Eigen::MatrixXd& values, const Model& model, const Eigen::VectorXd& p) const;
+  Eigen::MatrixXd residuals(const ShotModel& by, const Eigen::MatrixXd& values, const Model& model,
+                            const Eigen::VectorXd& p) const;
+  Contact contact(const Eigen::MatrixXd& values, const Eigen::VectorXd& noise) const;
   Eigen::MatrixXd sensitivity(const Eigen::MatrixXd& values, int column) const;
   Eigen::MatrixXd sensitivity(const Parametrisation& form) const;
   double deviance(const Eigen::MatrixXd& values, const Eigen::VectorXd& noise, const Model& model,
@@ -62,17 +70,19 @@ class Columns {
   std::string text(const Slip& slip, bool second) const;
 
   const ShotCase& case_;
-  std::vector<const Column*> columns_;   ///< inputs, then channels
-  std::vector<Input> inputs_;            ///< of the first columns
-  std::vector<Output> outputs_;          ///< of the others
-  std::vector<int> rows_;                ///< of the file
-  std::vector<double> order_;            ///< place in the session
-  std::vector<double> loft_;             ///< found from the launch angle, where the case calls it unknown [rad]
-  Eigen::MatrixXd values_;               ///< rows x columns as recorded, SI; missing outputs NaN
-  Eigen::VectorXd noise_, input_noise_;  ///< per channel, per input [SI]
-  std::unique_ptr<ShotModel> model_;
-  std::vector<Slip> slips_;  ///< the likeliest first
-  double as_recorded_ = 0;   ///< deviance
+  std::vector<const Column*> columns_;    ///< inputs, then channels
+  std::vector<Input> inputs_;             ///< of the first columns
+  std::vector<Output> outputs_;           ///< of the others
+  std::vector<int> rows_;                 ///< of the file
+  std::vector<double> order_;             ///< place in the session
+  std::vector<double> loft_;              ///< found from the launch angle, where the case calls it unknown [rad]
+  Eigen::MatrixXd values_;                ///< rows x columns as recorded, SI; missing outputs NaN
+  Eigen::VectorXd noise_, input_noise_;   ///< per channel, per input [SI]
+  std::unique_ptr<ShotModel> model_;      ///< the base itself
+  std::unique_ptr<ShotModel> companion_;  ///< tells what effects change, where the base does not
+  std::vector<Slip> slips_;               ///< the likeliest first
+  Contact contact_;                       ///< as recorded
+  double as_recorded_ = 0;                ///< deviance
 };
 
 }  // namespace hosel::loop

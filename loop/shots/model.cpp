@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "golf/dense.hpp"
+#include "golf/first_contact.hpp"
 #include "golf/quantities.hpp"
 #include "loop/rules.hpp"
 #include "models/rigid/rigid_eccentric.hpp"
@@ -60,6 +61,36 @@ const models::ImpactModel& closed_form() {
   return model;
 }
 
+namespace {
+
+/// The contact law by which the closed form makes the base's speed along the normal and its spin, as far as one does:
+/// what an effect changes depends on it.
+ContactLaw like(Blow blow, const Launch& base) {
+  const ContactLaw declared = blow.contact;
+  const FirstContact g = first_contact(blow);
+  const Vec3 axis = g.normal.cross(g.slip()).normalized();
+  const auto of = [&](const Launch& l) { return Eigen::Vector2d(l.velocity.dot(g.normal), l.spin.dot(axis)); };
+  constexpr double step = 0.01;
+  for (int pass = 0; pass < 3; ++pass) {
+    const Eigen::Vector2d now = of(closed_form().launch(blow));
+    Eigen::Matrix2d slope;
+    int column = 0;
+    for (double* x : {&blow.contact.restitution, &blow.contact.tangential_restitution}) {
+      *x += step;
+      slope.col(column++) = (of(closed_form().launch(blow)) - now) / step;
+      *x -= step;
+    }
+    const Eigen::Vector2d change = slope.inverse() * (of(base) - now);
+    blow.contact.restitution += change[0];
+    blow.contact.tangential_restitution += change[1];
+  }
+  const ContactLaw& law = blow.contact;
+  const bool possible = law.normal_restitution(g.closing_speed(), 0) > 0 && std::abs(law.tangential_restitution) < 1;
+  return possible ? law : declared;
+}
+
+}  // namespace
+
 solvers::Loss loss_of_shot(int channels) {
   const double knee = quantile(complement(boost::math::chi_squared(channels), kByChance));
   return {solvers::Loss::Tail::logarithmic, knee, 12 * knee, channels};
@@ -88,7 +119,13 @@ ShotModel::ShotModel(const models::ImpactModel& base, bool direct, std::vector<S
   if (!direct_) {
     offset_.reserve(trials_.size());
     for (Shot& t : trials_) {
-      offset_.push_back(plus(base_.launch(t.blow), closed_form().launch(t.blow), -1));
+      try {
+        const Launch by_base = base_.launch(t.blow);
+        t.blow.contact = like(t.blow, by_base);
+        offset_.emplace_back(plus(by_base, closed_form().launch(t.blow), -1));
+      } catch (const std::invalid_argument&) { offset_.emplace_back(); } catch (const solvers::NonConvergence&) {
+        offset_.emplace_back();
+      }
       t.blow.club.shaft.reset();  // the companion needs none, and copies stay cheap
     }
   }
@@ -106,7 +143,9 @@ Launch ShotModel::answer(const Shot& trial, int shot) const {
   if (surrogate_) return surrogate_->launch(trial);
   if (direct_) return base_.launch(trial.blow);
   const Launch l = closed_form().launch(trial.blow);
-  return shot < 0 ? l : plus(l, offset_[std::size_t(shot)], 1);
+  if (shot < 0) return l;
+  if (!offset_[std::size_t(shot)]) throw std::invalid_argument("the base has no answer to this blow");
+  return plus(l, *offset_[std::size_t(shot)], 1);
 }
 
 void ShotModel::change(const Model& model, const double* parameters, Shot& trial) {
@@ -304,6 +343,25 @@ Eigen::MatrixXd ShotModel::input_jacobian(int shot, const Model& model, const do
   return J;
 }
 
+Eigen::VectorXd ShotModel::by_curvature(int shot, const Model& model, const double* parameters,
+                                        const Eigen::MatrixXd& covariance) const {
+  Eigen::VectorXd sum = Eigen::VectorXd::Zero(width()), up(width()), middle(width()), down(width());
+  if (!predict(shot, model, parameters, middle.data())) return sum;
+  const auto [variances, directions, converged] = dense::eigenpairs(covariance);
+  for (Eigen::Index k = 0; k < kInputs; ++k) {
+    if (!(variances[k] > 0)) continue;
+    const Eigen::VectorXd step = std::sqrt(variances[k]) * directions.col(k);
+    const auto look = [&](double way, Eigen::VectorXd& out) {
+      Shot t = trial(shot);
+      for (int i = 0; i < kInputs; ++i)
+        if (step[i] != 0) set(t.blow, Input(i), get(t.blow, Input(i)) + way * step[i]);
+      return predict(t, shot, model, parameters, out.data());
+    };
+    if (look(1, up) && look(-1, down)) sum += (up + down) / 2 - middle;
+  }
+  return sum;
+}
+
 ShotModel::Shown ShotModel::shown(int shot, const Shot& t, const Model& model, const double* parameters) const {
   const int m = width();
   // What the channels (and, last, the launch angle) show of an error of the answer.
@@ -457,6 +515,7 @@ void ShotModel::set_covariance(const std::vector<Eigen::MatrixXd>& inputs, const
       if (mask) {
         const Eigen::MatrixXd J = input_jacobian(i, model, parameters, mask);
         cov += J * sx * J.transpose();
+        expected_.row(i) -= by_curvature(i, model, parameters, sx).transpose();
       }
     }
     for (const Varying& v : varying_) {

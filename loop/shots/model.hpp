@@ -165,6 +165,9 @@ class ShotModel {
                  Eigen::MatrixXd& J) const;
   void linearise(const std::vector<int>& shots, const Model& model, const Eigen::VectorXd& p, bool central,
                  Eigen::VectorXd& z, Eigen::MatrixXd& J) const;
+  /// What the mean over inputs that differ lies beyond the answer to their mean, to second order.
+  Eigen::VectorXd by_curvature(int shot, const Model& model, const double* parameters,
+                               const Eigen::MatrixXd& covariance) const;
   /// Sensitivity of the channels to the inputs about a model: width x 8, header's units per SI.
   Eigen::MatrixXd input_jacobian(int shot, const Model& model, const double* parameters, unsigned mask) const;
   /// What the rows' scatter does to the residual of their mean, header's units.
@@ -198,7 +201,7 @@ class ShotModel {
   std::optional<models::FlightConditions> flight_;
   bool flies_ = false;
   std::vector<models::FlightAnswers> flights_;  ///< of the shots whose launch was seen, without effects
-  std::vector<Launch> offset_;                  ///< base minus companion at the trials, for bases that are not direct
+  std::vector<std::optional<Launch>> offset_;   ///< base minus companion at the trials, for bases that are not direct
 };
 
 }  // namespace hosel::loop

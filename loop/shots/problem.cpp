@@ -537,6 +537,15 @@ std::optional<Location> ShotProblem::two_populations(const Selection& s) const {
                   (best->second[i] ? 1 / count : -1 / (double(rows.size()) - count));
   Eigen::Index most = 0;
   difference.cwiseAbs().maxCoeff(&most);
+  // In the channel's own unit, of the rows that have it.
+  const Eigen::MatrixXd raw = model_->residuals(s.base.model, s.base.p.data());
+  std::array<double, 2> sum{}, values{};
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    if (const double x = raw(rows[i], most); std::isfinite(x)) {
+      sum[std::size_t(best->second[i])] += x;
+      values[std::size_t(best->second[i])] += 1;
+    }
+  const double by_channel = std::abs(sum[1] / values[1] - sum[0] / values[0]);
   std::string apart = "two balls, players or settings that no column tells apart";
   constexpr double alike = 0.9;
   for (const Column& c : case_.shots.columns) {
@@ -553,8 +562,10 @@ std::optional<Location> ShotProblem::two_populations(const Selection& s) const {
   return Location{
       channel(int(most)).name, "",
       fmt::format(
-          "a mixture of two populations, {:.0f} % of the shots {:.1f} standard deviations from the others{}: {}",
-          100 * best->share, best->apart, by.empty() ? "" : fmt::format(", as {} would move them", by), apart)};
+          "a mixture of two populations, {:.0f} % of the shots {:.1f} standard deviations from the others, {:.3g} in "
+          "{}{}: {}",
+          100 * best->share, best->apart, by_channel, channel(int(most)).name,
+          by.empty() ? "" : fmt::format(", as {} would move them", by), apart)};
 }
 
 /// Where the residual is no structure in any regressor and yet no noise: two populations; a channel whose scatter

@@ -296,7 +296,7 @@ Screening screen(const ShotModel& model, const Shots& shots, const std::vector<i
     for (const ColumnUse& u : uses)
       if (std::isfinite(u.column->value[file_row])) present.push_back(&u);
     const std::vector<Slip> slips = slips_of(row, present, file_row);
-    const double fits = bulk * (quantile(law, 0.95) + 2), half = 0.25 * distance;
+    const double fits = bulk * (quantile(law, 1 - kTold) + 2), half = 0.25 * distance;
     const Slip* best = nullptr;
     for (const Slip& s : slips)
       if (s.distance < fits && s.distance < half && (!best || s.distance + s.cost < best->distance + best->cost))

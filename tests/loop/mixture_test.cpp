@@ -59,5 +59,22 @@ TEST(Mixture, AnEffectOfAllShotsOrOneOfManySizesIsNone) {
   EXPECT_FALSE(growing && growing->gain > 20);
 }
 
+TEST(Mixture, NoiseOfAFlatShapeIsOnePopulation) {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> uniform(-2, 2);
+  std::normal_distribution<double> gauss;
+  Eigen::MatrixXd flat(300, 2), two(300, 2);
+  for (Eigen::Index i = 0; i < flat.rows(); ++i)
+    for (Eigen::Index c = 0; c < 2; ++c) {
+      flat(i, c) = uniform(random);
+      two(i, c) = gauss(random) + (c == 0 && i % 2 ? 4 : 0);
+    }
+  EXPECT_FALSE(mixture(flat));
+  const auto parted = mixture(two);
+  ASSERT_TRUE(parted);
+  EXPECT_GT(parted->gain, 20);
+  EXPECT_NEAR(parted->apart, 4, 0.4);
+}
+
 }  // namespace
 }  // namespace hosel::loop
