@@ -27,8 +27,9 @@ std::string lower(std::string_view text) {
 }
 
 bool missing(const std::string& cell) {
-  static const std::set<std::string> words = {"",    "-",  "--",  "---",  "\xE2\x80\x93", "\xE2\x80\x94",
-                                              "n/a", "na", "nan", "null", "none",         "#n/a"};
+  static const std::set<std::string> words = {
+      "",     "-",    "--",      "---",     "\xE2\x80\x93", "\xE2\x80\x94", "n/a",    "na", "nan",   "null",
+      "none", "#n/a", "#div/0!", "#value!", "#ref!",        "#num!",        "#name?", "?",  "error", "err"};
   return words.contains(lower(cell));
 }
 
@@ -76,15 +77,17 @@ std::string unit_of(std::string text) {
   std::erase_if(text, [](char c) { return c == '[' || c == ']' || c == '(' || c == ')' || c == ' ' || c == '.'; });
   static const std::vector<std::pair<std::string, std::set<std::string>>> spellings = {
       {"mph", {"mph", "mi/h"}},
-      {"kmh", {"kmh", "km/h", "kph"}},
-      {"mps", {"mps", "m/s", "m/sec"}},
+      {"kmh", {"kmh", "km/h", "kph", "km/u", "km/t", "км/ч"}},
+      {"mps", {"mps", "m/s", "m/sec", "м/с"}},
       {"ft/s", {"ft/s", "ft/sec", "fps"}},
       {"kn", {"kn", "kt", "knots"}},
-      {"deg", {"grad", "deg", "degrees", "degree", "\xC2\xB0", "\xC2\xBA"}},
+      {"deg",
+       {"grad", "deg", "degrees", "degree", "grados", "graden", "grader", "gradi", "degrés", "\xC2\xB0", "\xC2\xBA",
+        "度", "град"}},
       {"rad", {"rad"}},
       {"mrad", {"mrad"}},
       {"gon", {"gon"}},
-      {"rpm", {"rpm", "rev/min", "1/min", "u/min"}},
+      {"rpm", {"rpm", "rev/min", "1/min", "u/min", "tr/min", "varv/min", "omw/min", "об/мин"}},
       {"rad_per_s", {"rad/s", "rad/sec"}},
       {"deg_per_s", {"deg/s", "\xC2\xB0/s"}},
       {"turn/s", {"rps", "rev/s", "hz"}},
@@ -93,9 +96,11 @@ std::string unit_of(std::string text) {
       {"cm", {"cm"}},
       {"in", {"in", "inch", "inches"}},
       {"m", {"m"}},
-      {"yd", {"yd", "yds", "yards"}},
+      {"yd", {"yd", "yds", "yard", "yards", "ヤード"}},
       {"ft", {"ft", "feet"}},
       {"s", {"s", "sec"}},
+      {"kg", {"kg"}},
+      {"g", {"g", "grams"}},
       {"pct", {"%"}}};
   for (const auto& [unit, words] : spellings)
     if (words.contains(text)) return unit;
@@ -118,8 +123,16 @@ std::string unit_in(const std::string& header) {
     if (std::ranges::any_of(words, [](const std::string& w) { return lower(w).starts_with("out"); })) continue;
     if (!inch.empty()) return inch;
   }
+  return unit_of(header.substr(unit_tail(header)));
+}
+
+std::size_t unit_tail(const std::string& header) {
   const auto blank = header.find_last_of(" _");
-  return blank == std::string::npos ? "" : unit_of(header.substr(blank + 1));
+  if (blank != std::string::npos) return blank + 1;
+  for (std::size_t i = header.size(); i-- > 1;)  // `BallSpeedMph`
+    if (std::isupper(static_cast<unsigned char>(header[i])) && std::islower(static_cast<unsigned char>(header[i - 1])))
+      return i;
+  return header.size();
 }
 
 std::string figure_of(const std::string& cell) {
@@ -313,6 +326,10 @@ std::optional<Cell> number(std::string text, bool comma_is_decimal, Sides sides)
   }
   for (const char* minus : {"\xE2\x88\x92", "\xE2\x80\x93"})  // typographic ones
     if (text.starts_with(minus)) text.replace(0, 3, "-");
+  if (text.size() > 2 && text.front() == '(' && text.back() == ')') {  // `(0.6)`, as in accounts
+    if (!std::isdigit(static_cast<unsigned char>(text[1]))) return {};
+    text = "-" + text.substr(1, text.size() - 2);
+  }
   const auto of_number = [](char c) { return std::string_view("0123456789.,-+eE'").find(c) != std::string_view::npos; };
   std::size_t end = 0;
   while (end < text.size() && (of_number(text[end]) || (text[end] == ' ' && end + 1 < text.size() &&
@@ -326,12 +343,16 @@ std::optional<Cell> number(std::string text, bool comma_is_decimal, Sides sides)
     if (const auto behind = side_of(plain(tail), sides)) {
       if (out.sided) return {};
       take(*behind);
-      // `5 mm Toe`: a unit may stand before the side.
-      if (const auto gap = tail.find_first_of(" \t"); gap != std::string::npos) out.unit = unit_of(tail.substr(0, gap));
+      // `5 mm Toe`: a unit may stand before the side; none does in `in to out`.
+      if (const auto gap = tail.find_first_of(" \t");
+          gap != std::string::npos && side_of(plain(tail.substr(gap)), sides))
+        out.unit = unit_of(tail.substr(0, gap));
     } else if (out.unit = unit_of(tail); out.unit.empty()) {
       return {};
     }
   }
+  if (digits.size() > 1 && is_sign(digits.back()) && !is_sign(digits.front()))  // `0.4-`
+    std::ranges::rotate(digits, digits.end() - 1);
   if (!digits.empty() && digits.front() == '+') digits.erase(0, 1);
   const auto [stop, error] = std::from_chars(digits.data(), digits.data() + digits.size(), out.value);
   if (error != std::errc() || stop != digits.data() + digits.size() || digits.empty()) return {};

@@ -31,6 +31,8 @@ bool missing(const std::string& cell);
 std::string unit_of(std::string text);
 /// `Ball Speed (mph)`, `Ball Speed [mph]`, `Ball Speed mph`, `Offset (mm toe-/heel+)`, `Offset (in mm)` -> mph, mm.
 std::string unit_in(const std::string& header);
+/// Where the last word of a header begins, which may be its unit: `Ball Speed mph`, `ball_speed_mph`, `BallSpeedMph`.
+std::size_t unit_tail(const std::string& header);
 /// What stands where units do, is built as they are and is none that is known: `Spin (turns/min)`; empty where nothing
 /// is.
 std::string strange_unit(std::string_view text);
@@ -59,8 +61,8 @@ struct Cell {
   bool own = false;       ///< its sign is the player's own: in-to-out, open, a fade
   bool marked = false;    ///< `6401*`, `6806 (est.)`: the instrument's own estimate
 };
-/// `1.234,5`, `2 540`, `27.8 L`, `3.5R`, `R1.1`, `5 mm Toe`, `94.2 mph`, `6.1 Down`, `2.3 In-Out`. Right, toe, up,
-/// in-to-out and open are positive; `sides`: which of these words a cell may have.
+/// `1.234,5`, `2 540`, `0.4-`, `(0.6)`, `27.8 L`, `3.5R`, `R1.1`, `5 mm Toe`, `94.2 mph`, `6.1 Down`, `2.3 In-Out`.
+/// Right, toe, up, in-to-out and open are positive; `sides`: which of these words a cell may have.
 std::optional<Cell> number(std::string text, bool comma_is_decimal, Sides sides);
 /// The value of a cell with a decimal point and no side.
 std::optional<double> plain_number(const std::string& cell);

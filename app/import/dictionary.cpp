@@ -1,10 +1,13 @@
 #include "app/import/dictionary.hpp"
 
 #include <fmt/format.h>
+#include <utf8.h>
 
 #include <algorithm>
 #include <cctype>
+#include <iterator>
 #include <map>
+#include <set>
 #include <tuple>
 
 #include "app/reader.hpp"
@@ -14,16 +17,50 @@ namespace hosel::app {
 
 namespace fs = std::filesystem;
 
+namespace {
+
+/// What a letter is compared as: lower case without accent, a blank for punctuation, nothing for a mark or a symbol.
+/// Other scripts keep their letters.
+std::u32string folded(char32_t c) {
+  if (c >= 0xFF01 && c <= 0xFF5E) c -= 0xFEE0;  // full width
+  if (c < 0x80) return {std::isalnum(int(c)) ? char32_t(std::tolower(int(c))) : U' '};
+  if (c < 0xC0) return {};  // degrees, ordinals
+  // From U+00C0 on; a dot: no letter, or one that becomes two.
+  constexpr std::string_view base =
+      "aaaaaa.ceeeeiiiidnooooo.ouuuuy..aaaaaa.ceeeeiiiidnooooo.ouuuuy.yaaaaaaccccccccddddeeeeeeeeeegggggggghhhh"
+      "iiiiiiiiii..jjkkkllllllllllnnnnnnnnnoooooo..rrrrrrssssssssttttttuuuuuuuuuuuuwwyyyzzzzzzs";
+  static_assert(base.size() == 0x180 - 0xC0);
+  if (c < 0x180) {
+    if (c == 0xC6 || c == 0xE6) return U"ae";
+    if (c == 0xDE || c == 0xFE) return U"th";
+    if (c == 0xDF) return U"ss";
+    if (c == 0x132 || c == 0x133) return U"ij";
+    if (c == 0x152 || c == 0x153) return U"oe";
+    const char letter = base[c - 0xC0];
+    return letter == '.' ? std::u32string{} : std::u32string{char32_t(letter)};
+  }
+  if ((c >= 0x300 && c < 0x370) || (c >= 0x200B && c < 0x2010) || c == 0xFEFF) return {};  // accents by themselves
+  if ((c >= 0x2000 && c < 0x2070) || (c >= 0x3000 && c < 0x3040) || c == 0x30FB) return U" ";
+  if (c >= 0x2100 && c < 0x2C00) return {};
+  if ((c >= 0x391 && c <= 0x3A9) || (c >= 0x410 && c < 0x430)) c += 0x20;
+  if (c >= 0x400 && c < 0x410) c += 0x50;
+  return {c};
+}
+
+}  // namespace
+
 std::string plain(std::string_view text) {
-  std::string out;
+  std::string valid, out;
+  utf8::replace_invalid(text.begin(), text.end(), std::back_inserter(valid), U'?');
   int depth = 0;
-  for (const char c : text) {
-    if (c == '(' || c == '[') ++depth;
-    if (depth == 0) {
-      if (std::isalnum(static_cast<unsigned char>(c))) out += char(std::tolower(static_cast<unsigned char>(c)));
-      else if (!out.empty() && out.back() != ' ' && static_cast<unsigned char>(c) < 0x80) out += ' ';
-    }
-    if ((c == ')' || c == ']') && depth > 0) --depth;
+  for (auto at = valid.begin(); at != valid.end();) {
+    const char32_t c = utf8::next(at, valid.end());
+    const bool opens = c == '(' || c == '[' || c == 0xFF08, closes = c == ')' || c == ']' || c == 0xFF09;
+    if (opens) ++depth;
+    if (depth == 0)
+      for (const char32_t letter : folded(c))
+        if (letter != ' ' || (!out.empty() && out.back() != ' ')) utf8::append(letter, out);
+    if (closes && depth > 0) --depth;
   }
   while (!out.empty() && out.back() == ' ') out.pop_back();
   return out;
@@ -31,6 +68,7 @@ std::string plain(std::string_view text) {
 
 std::string letters(std::string_view header) {
   std::string out = plain(header);
+  if (out.empty()) out = lower(header);  // signs alone: `#` is not `%`
   std::erase(out, ' ');
   return out;
 }
@@ -74,8 +112,10 @@ void Dictionary::read(const fs::path& file) {
         known.insert(known.end(), words.begin(), words.end());
       }
   for (Table& t : root.tables("club"))
-    clubs_.push_back({each(t.texts("names"), plain), t.number("head_mass_kg", {0.1, 0.5}),
-                      t.number("loft_deg", {0, 70}), t.text("head", "iron")});
+    clubs_.push_back({.names = each(t.texts("names"), plain),
+                      .head_mass = t.number("head_mass_kg", {0.1, 0.5}),
+                      .loft = t.number("loft_deg", {0, 70}),
+                      .head = t.text("head", "iron")});
   if (auto t = root.optional_table("head"))
     for (const std::string& key : t->keys()) {
       Table head = t->table(key);
@@ -88,6 +128,10 @@ void Dictionary::read(const fs::path& file) {
     layouts_.push_back({t.text("name"), plain(t.text("has", "")), t.text("preamble", ""),
                         t.choice("units", {"imperial", "metric", "si"})});
   text.finish();
+  for (NominalClub& c : clubs_) {
+    c.keys.clear();
+    for (const std::string& name : c.names) c.keys.push_back(own_key(name));
+  }
 }
 
 fs::path shipped_dictionary() {
@@ -103,16 +147,17 @@ const MonitorQuantity* Dictionary::quantity_of(const std::string& header) const 
     return nullptr;
   };
   if (const MonitorQuantity* q = called(letters(header))) return q;
-  const auto blank = header.find_last_of(" _");  // `Ball Speed mph`
-  const bool tail = blank != std::string::npos && header.back() != ')' && !unit_of(header.substr(blank + 1)).empty();
-  return tail ? called(letters(std::string_view(header).substr(0, blank))) : nullptr;
+  const auto tail = unit_tail(header);
+  if (tail == header.size() || header.back() == ')' || unit_of(header.substr(tail)).empty()) return nullptr;
+  const std::string before = plain(std::string_view(header).substr(0, tail));
+  return called(letters(before.ends_with(" in") ? before.substr(0, before.size() - 3) : before));
 }
 
 std::string Dictionary::bookkeeping_of(const std::string& header) const {
   const std::string word = letters(header);
   for (const auto& [name, words] : bookkeeping_)
     if (std::ranges::count(words, word)) return name;
-  return names_a_hand(plain(header)) ? "hand" : "";
+  return names_a_hand(plain(header)) || says("lefty", header) || says("righty", header) ? "hand" : "";
 }
 
 void Dictionary::learn(const std::string& header, std::string_view quantity) {
@@ -168,27 +213,42 @@ std::pair<std::string, std::string> number_and_kind(const std::string& name) {
 
 }  // namespace
 
+std::string Dictionary::own_key(const std::string& name) const {
+  const auto [digits, letters] = number_and_kind(name);
+  if (digits.empty() || digits.size() > 2) return plain(name);
+  if (letters.empty()) return name.starts_with('#') && digits.size() == 1 ? digits + "i" : digits;
+  for (const auto& [kind, letter] : {std::pair{"iron", "i"}, {"wood", "w"}, {"hybrid", "h"}, {"wedge", ""}})
+    if (says(kind, letters)) return digits + letter;
+  return plain(name);
+}
+
 std::string Dictionary::club_key(const std::string& name) const {
-  const auto key = [&](const std::string& said) {
-    const auto [digits, letters] = number_and_kind(said);
-    if (digits.empty() || digits.size() > 2) return plain(said);
-    if (letters.empty()) return said.starts_with('#') && digits.size() == 1 ? digits + "i" : digits;
-    for (const auto& [kind, letter] : {std::pair{"iron", "i"}, {"wood", "w"}, {"hybrid", "h"}, {"wedge", ""}})
-      if (says(kind, letters)) return digits + letter;
-    return plain(said);
-  };
-  std::string own = key(name);
+  const std::string own = own_key(name);
   for (const NominalClub& c : clubs_)
-    for (const std::string& n : c.names)
-      if (key(n) == own) return key(c.names.front());
+    if (std::ranges::count(c.keys, own)) return c.keys.front();
   return own;
 }
 
 const NominalClub* Dictionary::club(const std::string& name) const {
-  const std::string key = club_key(name);
-  for (const NominalClub& c : clubs_)
-    if (club_key(c.names.front()) == key) return &c;
-  return nullptr;
+  const auto called = [&](const std::string& said) -> const NominalClub* {
+    const std::string key = own_key(said);
+    for (const NominalClub& c : clubs_)
+      if (std::ranges::count(c.keys, key)) return &c;
+    return nullptr;
+  };
+  if (const NominalClub* whole = called(name)) return whole;
+  // Beside a brand, a model, a loft: `7I - Srixon ZX5`, `G430 Driver 10.5°`. One club only may be named.
+  const std::vector<std::string> words = words_of(plain(name));
+  const auto of_digits = [](const std::string& w) { return w.find_first_not_of("0123456789") == w.npos; };
+  std::set<const NominalClub*> found;
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    const bool pair = i + 1 < words.size() && of_digits(words[i]) != of_digits(words[i + 1]);
+    const NominalClub* c = pair ? called(words[i] + " " + words[i + 1]) : nullptr;
+    if (c) ++i;
+    else if (words[i].size() > 1 && !of_digits(words[i])) c = called(words[i]);
+    if (c) found.insert(c);
+  }
+  return found.size() == 1 ? *found.begin() : nullptr;
 }
 
 }  // namespace hosel::app

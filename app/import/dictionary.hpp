@@ -22,10 +22,10 @@ struct MonitorQuantity {
   std::vector<Header> headers;
 };
 struct NominalClub {
-  std::vector<std::string> names;
-  double head_mass = 0;  ///< [kg]
-  double loft = 0;       ///< at impact [deg]
-  std::string head;      ///< one of Dictionary::heads
+  std::vector<std::string> names, keys;  ///< keys: `club_key` of each name
+  double head_mass = 0;                  ///< [kg]
+  double loft = 0;                       ///< at impact [deg]
+  std::string head;                      ///< one of Dictionary::heads
 };
 /// The head that a case begins with, as its TOML has it.
 struct NominalHead {
@@ -52,7 +52,8 @@ class Dictionary {
   std::vector<std::string> quantity_names() const;
   std::string bookkeeping_of(const std::string& header) const;  ///< the role of a header, "" where it has none
   std::vector<std::string> roles() const;                       ///< club, shot, hand, ...
-  /// `7Iron`, `7-iron`, `Iron 7`, `7i`, `i7`, `Eisen 7` are one club, `DR` and `Driver` another.
+  /// `7Iron`, `7-iron`, `Iron 7`, `7i`, `i7`, `Eisen 7` are one club, `DR` and `Driver` another. Words beside it are
+  /// its brand's: `7I - Srixon ZX5`.
   const NominalClub* club(const std::string& name) const;
   /// One spelling of a club's name: that of the nominal clubs where it is one, else number and kind (`7i`), else as
   /// `plain` has it.
@@ -65,6 +66,7 @@ class Dictionary {
   const std::map<std::string, NominalHead>& heads() const { return heads_; }
 
  private:
+  std::string own_key(const std::string& name) const;  ///< without what nominal clubs are called
   std::vector<MonitorQuantity> quantities_;
   std::map<std::string, std::vector<std::string>, std::less<>> bookkeeping_, words_;
   std::vector<NominalClub> clubs_;
@@ -78,7 +80,8 @@ std::filesystem::path shipped_dictionary();
 /// Whether a header, as `plain` has it, is about the player's hand: `player hand`, `left handed`; not `hand speed`.
 bool names_a_hand(const std::string& words);
 
-/// Lower case, without what stands in brackets, single blanks for punctuation.
+/// Lower case, without accents and what stands in brackets, single blanks for punctuation; letters of other scripts
+/// stay.
 std::string plain(std::string_view text);
 
 /// As headers are compared: `FaceToTarget` is `face to target`.

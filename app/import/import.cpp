@@ -65,9 +65,12 @@ void show(Session& x) {
   };
   passed_over(x.sheet.before.size(), "line before the header", "lines before the header");
   passed_over(x.sheet.summaries, "summary row", "summary rows");
+  passed_over(x.sheet.speedless, "row without a speed", "rows without a speed");
+  passed_over(x.sheet.notes.size(), "line of text below the header", "lines of text below the header");
   passed_over(x.sheet.headers_again, "repeated header", "repeated headers");
   passed_over(x.sheet.units_again, "repeated row of units", "repeated rows of units");
   passed_over(x.sheet.messages, "message without a shot", "messages without a shot");
+  for (const std::string& told : x.told) fmt::print("  {}\n", told);
   if (x.other_clubs) fmt::print("  left out: {} with other clubs\n", post::counted(x.other_clubs, "shot"));
   if (x.modelled)
     fmt::print("  spin modelled, not measured, left out (--modelled takes it): {} of {}\n", x.modelled,
@@ -89,7 +92,7 @@ void show(Session& x) {
     if (u.name.empty()) continue;
     const auto unit = split_unit(u.name).unit;
     fmt::print("  {:<{}}  {:<20} {:>6}  {:>10}{}\n", u.header, width, u.name, u.filled,
-               unit && u.name != "head_mass_kg" && u.header != "(nominal)"
+               unit && u.name != "head_mass_kg" && !u.header.starts_with('(')
                    ? fmt::format("{:.4g}", u.median / unit->si + 0.0)
                    : "",
                u.note.empty() ? "" : "  " + u.note);
@@ -99,7 +102,7 @@ void show(Session& x) {
     if (u.name.empty()) aside += (aside.empty() ? "" : ", ") + u.header + (u.note.empty() ? "" : " (" + u.note + ")");
   if (!aside.empty()) fmt::print("\n  in kept.csv only: {}\n", aside);
   if (!x.no_nominal.empty())
-    fmt::print("  no nominal figures for: {}; these shots will be left out\n",
+    fmt::print("  not a known club: {}; these shots will be left out\n",
                fmt::join(x.no_nominal | std::views::transform([](const std::string& n) {
                            return n.empty() ? std::string("(no club)") : n;
                          }),
@@ -183,7 +186,7 @@ std::string add_unrecorded(Session& all, bool turns) {
   std::string lines;
   for (const Unrecorded& u : inputs) {
     if ((u.of_turning_head && !turns) || all.find(u.stem)) continue;
-    Understood column{.header = "(nominal)"};
+    Understood column{.header = "(assumed)"};
     column.name = fmt::format("{}_{}", u.stem, u.unit);
     column.cells.assign(all.shots, "0");
     column.filled = all.shots;
@@ -260,15 +263,15 @@ void import_shots(const ImportOptions& o) {
   std::vector<Session> sessions;
   for (std::size_t k = 0; k < o.files.size(); ++k) {
     const fs::path& file = o.files[k];
-    // An export of one club is often called by its name.
+    // An export of one club is often called by its name; a letter or a number alone is none.
     const std::string stem = file.stem().string();
-    const bool named = several && o.club.empty() && d.club(stem);
+    const bool named = o.club.empty() && stem.size() > 1 && stem.find_first_not_of("0123456789") != stem.npos &&
+                       d.club(stem);
     sessions.push_back(understand(file, std::move(sheets[k]), named ? stem : o.club, o, d, by_hand));
   }
   if (several)
     for (Session& s : sessions) {
       show(s);
-      if (!s.find("club") && o.club.empty()) fmt::print("  club, from the name of the file: {}\n", s.club);
       fmt::print("\n");
     }
   if (several) fmt::print("{} files:\n", sessions.size());
@@ -281,7 +284,9 @@ void import_shots(const ImportOptions& o) {
   // One club's mass is the head's own, in the case, where its owner corrects it once.
   const bool one_mass = mass->filled == all.shots &&
                         std::ranges::count(mass->cells, mass->cells.front()) == std::ssize(mass->cells);
-  const std::string own_mass = one_mass ? fmt::format("mass_kg = {}  # nominal\n", mass->cells.front()) : "";
+  const std::string own_mass =
+      one_mass ? fmt::format("mass_kg = {}{}\n", mass->cells.front(), mass->header == "(nominal)" ? "  # nominal" : "")
+               : "";
   if (one_mass) mass->note += ", in case.toml";
 
   std::set<std::string> different;
@@ -291,7 +296,7 @@ void import_shots(const ImportOptions& o) {
   for (const std::string& name : different)
     if (const NominalClub* entry = d.club(name)) heads.insert(entry->head);
   if (different.empty())
-    if (const NominalClub* entry = d.club(o.club)) heads.insert(entry->head);
+    if (const NominalClub* entry = d.club(all.club)) heads.insert(entry->head);
   const bool turns = find("azimuth") && heads.size() == 1 && d.heads().contains(*heads.begin());
   // Whole launches, whatever the case's model takes of them.
   bool sideways = false;

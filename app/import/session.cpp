@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <cmath>
 #include <regex>
@@ -77,6 +78,16 @@ bool no_reading(double value) {
   return a == 99999 || a == 999999 || a == 99999.9 || value == -9999 || value == -999;
 }
 
+/// Nines alone, or the last number that a computer's integer holds: they stand for nothing where no reading can be so.
+bool fills_a_field(double value) {
+  const double a = std::abs(value);
+  for (const double nines : {99.0, 999.0, 9999.0, 99.9, 999.9, 9999.9, 99.99, 999.99})
+    if (a == nines) return true;
+  for (const int bits : {15, 16, 24, 31, 32})
+    if (a == std::ldexp(1.0, bits) - 1 || a == std::ldexp(1.0, bits)) return true;
+  return false;
+}
+
 /// Empties the cells of the rows where `which`; how many had something.
 std::size_t blank(Understood& u, const std::vector<bool>& which) {
   const std::size_t before = u.filled;
@@ -102,7 +113,9 @@ std::optional<bool> yes_or_no(const std::string& cell) {
 std::string copied(const std::string& header) { return lower(trimmed(header)); }
 
 /// Of a header in --column: by its unit as well, where it has one: `SIDE (deg)` beside `SIDE (rpm)`.
-std::string header_key(const std::string& header) { return unit_in(header).empty() ? plain(header) : copied(header); }
+std::string header_key(const std::string& header) {
+  return unit_in(header).empty() && !plain(header).empty() ? plain(header) : copied(header);
+}
 
 /// Face minus path under the name of a place on the face, as one connector writes it: nine cells in ten agree.
 bool is_face_to_path(const Understood& u, const Understood* face, const Understood* path) {
@@ -138,18 +151,23 @@ class Reading {
   }
 
   Session run(const std::string& club) {
+    club_ = club;
     find_roles();
+    leave_out_unused();
     keep_one_club();
     read_columns();
+    leave_out_placeholders();
     one_name_a_club();
+    leave_out_static_loft();
     leave_out_modelled();
     leave_out_false_place();
+    compare_with_landing();
     mirror_left_hand();
     leave_out_zeros();
     derive_face();
     leave_out_copies();
     check_speeds();
-    add_nominal(club);
+    add_nominal();
     return std::move(out_);
   }
 
@@ -167,6 +185,8 @@ class Reading {
       std::string r = d_.bookkeeping_of(sheet.names[c]);
       if ((r == "club" || r == "ball") && d_.quantity_of(sheet.names[c]) && is_speed(c, r)) r.clear();
       if (r.empty() && tells_how_spin_was_found(c)) r = "accuracy";
+      if (r.empty() && !d_.quantity_of(sheet.names[c]) && names_hands(c)) r = "hand";
+      if ((r == "club" || r == "ball") && d_.quantity_of(sheet.names[c])) role_[c] = "aside";  // names in any case
       if (r.empty() || is_empty(c)) continue;
       if (r == "accuracy") {  // one for the rate and one for the axis
         role_[c] = r;
@@ -179,6 +199,16 @@ class Reading {
       if (!first && known > at->second.first) at->second = {known, c};
     }
     for (const auto& [r, at] : best) role_[at.second] = r;
+  }
+
+  /// A column of nothing but words for a left-handed and a right-handed player, whatever its header; or for left and
+  /// right under one that may be about hands.
+  bool names_hands(std::size_t c) const {
+    const bool sides = d_.says("may_name_hands", out_.sheet.names[c]);
+    return !is_empty(c) && std::ranges::all_of(out_.sheet.rows, [&](const Row& row) {
+      return missing(row[c]) || d_.says("lefty", row[c]) || d_.says("righty", row[c]) ||
+             (sides && left_hand(row[c], Asked::nothing));
+    });
   }
 
   bool is_empty(std::size_t c) const {
@@ -227,6 +257,24 @@ class Reading {
     return at == role_.end() ? std::nullopt : std::optional(std::size_t(at - role_.begin()));
   }
 
+  /// Shots that the file itself marks as deleted, or as none of its statistics.
+  void leave_out_unused() {
+    std::vector<Row>& rows = out_.sheet.rows;
+    for (const auto& [role, unwanted] : {std::pair{"used", false}, {"deleted", true}}) {
+      const auto c = column_of(role);
+      if (!c) continue;
+      const auto marked = [&](const Row& row) { return yes_or_no(row[*c]) == unwanted; };
+      const auto n = std::size_t(std::ranges::count_if(rows, marked));
+      const std::string& header = out_.sheet.names[*c];
+      if (n == rows.size()) out_.told.push_back(fmt::format("'{}' leaves out every shot: all of them stay in", header));
+      else if (n > 0) {
+        std::erase_if(rows, marked);
+        out_.told.push_back(
+            fmt::format("left out by '{}': {}; --column '{}=' takes them", header, post::counted(n, "shot"), header));
+      }
+    }
+  }
+
   void keep_one_club() {
     const auto c = column_of("club");
     if (o_.club.empty() || !c) return;
@@ -234,8 +282,19 @@ class Reading {
     std::vector<std::string> names;
     for (const Row& row : sheet.rows)
       if (!std::ranges::count(names, row[*c])) names.push_back(row[*c]);
+    const NominalClub* wanted = d_.club(o_.club);
+    const auto is_it = [&](const std::string& name) {
+      return d_.club_key(name) == d_.club_key(o_.club) || (wanted && d_.club(name) == wanted);
+    };
+    // `Irn` for every shot says no more than that they are of one club.
+    if (names.size() == 1 && wanted && !d_.club(names[0]) && !is_it(names[0])) {
+      role_[*c] = "aside";
+      out_.told.push_back(fmt::format("'{}' in column '{}' is not a known club: taken as {}, by --club", names[0],
+                                      sheet.names[*c], o_.club));
+      return;
+    }
     out_.other_clubs = sheet.rows.size();
-    std::erase_if(sheet.rows, [&](const Row& row) { return d_.club_key(row[*c]) != d_.club_key(o_.club); });
+    std::erase_if(sheet.rows, [&](const Row& row) { return !is_it(row[*c]); });
     out_.other_clubs -= sheet.rows.size();
     if (sheet.rows.empty())
       throw InputError(fmt::format("{}: no shot with club '{}'; there are: {}", out_.file.string(), o_.club,
@@ -278,11 +337,68 @@ class Reading {
       const bool turned = by_hand_.turned.contains(plain(header)) || by_hand_.turned.contains(whole);
       out_.columns.push_back(make_quantity(*q, c, unit, turned || said.sign < 0 ? -1 : 1, said.own));
       if (said.strange && !turned) out_.columns.back().remark("signs in the header not understood: taken as ours");
-      if (!o_.modelled && !hand &&
-          (whole.find("estimated") != whole.npos || whole.find("calculated") != whole.npos ||
-           whole.find("modelled") != whole.npos))
+      if (q->name == "impact_toe" && said.sign == 0 && !turned && !hand && d_.says("heel_positive", header) &&
+          std::ranges::none_of(sheet.rows, [&](const Row& row) {
+            const auto cell = number(row[c], false, q->sides);
+            return cell && cell->sided;
+          }))
+        out_.columns.back().remark(fmt::format(
+            "no sign said: taken as towards the toe; Foresight has heel +, and --column '{}=-impact_toe_mm' turns it",
+            header));
+      if (!o_.modelled && !hand && (says_modelled(whole) || says_modelled(foot_note(header))))
         out_.columns.back().name.clear(), out_.columns.back().note = "modelled by the instrument; --modelled takes it";
     }
+  }
+
+  static bool says_modelled(const std::string& text) {
+    return std::ranges::any_of(std::array{"estimated", "calculated", "modelled", "modeled"},
+                               [&](const char* word) { return text.find(word) != text.npos; });
+  }
+
+  /// The line of the file that explains the mark behind a header: `Spin Rate (rpm)*`, `* estimated from launch data`.
+  std::string foot_note(const std::string& header) const {
+    for (const std::string mark : {"***", "**", "*", "\xE2\x80\xA0", "\xC2\xB9", "\xC2\xB2"}) {
+      if (!header.ends_with(mark)) continue;
+      std::vector<std::string> lines = out_.sheet.notes;
+      for (const Row& row : out_.sheet.before) lines.push_back(trimmed(fmt::format("{}", fmt::join(row, " "))));
+      for (const std::string& line : lines)
+        if (line.starts_with(mark)) return lower(line);
+      break;
+    }
+    return "";
+  }
+
+  /// In the row of a value that stands for nothing the same value stands for nothing in other columns, too, where it
+  /// might be a reading.
+  void leave_out_placeholders() {
+    for (const auto& [row, value] : placeholders_)
+      for (Understood& u : out_.columns)
+        if (!u.name.empty() && split_unit(u.name).unit && plain_number(u.cells[row]) == value) {
+          u.cells[row].clear();
+          u.remark(fmt::format("{:g} in shot {} is no reading, as beside it", value, row + 1));
+          count_again(u);
+        }
+  }
+
+  /// `Loft` may be what is stamped on the club: the same in every shot, which no blow's loft is.
+  void leave_out_static_loft() {
+    Understood* loft = find("dynamic_loft");
+    if (!loft || !d_.says("may_be_static", loft->header) || by_hand_.of(loft->header, out_.sheet.names)) return;
+    const Understood* clubs = find("club");
+    std::map<std::string, std::pair<std::string, std::size_t>> of;  // club -> loft, shots
+    std::size_t most = 0;
+    for (std::size_t i = 0; i < out_.shots; ++i) {
+      if (loft->cells[i].empty()) continue;
+      auto& [first, n] = of.try_emplace(clubs ? clubs->cells[i] : "", loft->cells[i], 0).first->second;
+      if (first != loft->cells[i]) return;
+      most = std::max(most, ++n);
+    }
+    if (most < 5) return;
+    loft->name.clear();
+    loft->note = fmt::format(
+        "the same in every shot: the club's own loft, not that at impact; --column "
+        "'{}=dynamic_loft_deg' takes it",
+        loft->header);
   }
 
   /// From the header, the row of units or the first cell, of a column of distances; empty where none of them says.
@@ -307,7 +423,7 @@ class Reading {
     if (!strange.empty())
       throw InputError(fmt::format("{}: column '{}': the unit '{}' is not known; --column '{}={}_{}' states one",
                                    out_.file.string(), header, strange, header, q.name, q.metric));
-    if (unit.empty() && family_ == "si" && q.metric == "mm") unit = "m";
+    if (unit.empty() && q.metric == "mm" && (family_ == "si" || in_metres(c))) unit = "m";
     if (unit.empty() && q.imperial == q.metric) unit = q.imperial;  // degrees, rpm, mm: no monitor uses others
     if (!unit.empty()) return unit;
     // One cell alone does not speak for the others.
@@ -318,6 +434,17 @@ class Reading {
       if (unit.empty()) unit = cell->unit;
     }
     return unit;
+  }
+
+  /// Places on a face that would all be within 0.05 mm of its centre are in metres.
+  bool in_metres(std::size_t c) const {
+    const Row said = cells(c);
+    const bool comma = decimal_comma(said, out_.sheet, out_.sheet.names[c], out_.file);
+    double most = 0;
+    for (const std::string& cell : said)
+      if (const auto x = number(cell, comma, Sides::any))
+        most = std::max(most, x->unit.empty() ? std::abs(x->value) : 1);
+    return most > 0 && most < 0.05;
   }
 
   /// Of a file that names none, by what its layout is known for or --units says, as far as its carry bears it out.
@@ -436,8 +563,11 @@ class Reading {
     std::vector<double> values;
     const std::string given = unit;
     if (dimension_of(unit) == Dimension::length) unit = "mm";
+    else if (dimension_of(unit) == Dimension::mass) unit = "kg";
     else if (!split_unit("x_" + unit).unit) unit = q.metric;
     std::size_t others = 0, empty = 0, zeros = 0, marked = 0;
+    const std::vector<bool> placeholder = find_placeholders(q, raw, given, comma);
+    std::map<double, std::size_t> placed;
     for (std::size_t i = 0; i < raw.size(); ++i) {
       out.own.push_back(own);
       if (raw[i].empty()) {
@@ -452,6 +582,12 @@ class Reading {
                         i + 1, raw[i], out.header));
       out.own.back() = own || cell->own;
       const bool zero = cell->value == 0 && !q.zero, left_out = cell->marked && !o_.modelled;
+      if (placeholder[i]) {
+        out.cells.emplace_back();
+        ++placed[cell->value];
+        placeholders_.emplace_back(i, cell->value);
+        continue;
+      }
       if (zero || left_out || no_reading(cell->value)) {
         out.cells.emplace_back();
         ++(left_out ? marked : zero ? zeros : empty);
@@ -471,6 +607,8 @@ class Reading {
       ++out.filled;
     }
     if (given != unit) out.remark(fmt::format("{} made {}", given, unit));
+    if (given == "m" && family_ != "si" && headed_unit(column).empty() && q.metric == "mm")
+      out.remark("no unit in the file: metres, by their size");
     if (by_carry_ && (q.name == "ball_speed" || q.name == "club_speed") && stated_unit(q, column).empty())
       out.remark("no unit in the file: this one by its carry");
     if (comma) out.remark("decimal comma");
@@ -479,6 +617,12 @@ class Reading {
     if (zeros > 0) out.remark(fmt::format("0 taken as not measured: {}", zeros));
     if (marked > 0) out.remark(fmt::format("marked as estimated, left out (--modelled takes them): {}", marked));
     if (empty > 0) out.remark(fmt::format("cells without a reading: {}", empty));
+    for (const auto& [value, n] : placed) out.remark(fmt::format("{:.10g} is no reading: {}", value, n));
+    if (given == "mm" && !by_hand_.of(out.header, sheet.names) && values.size() > 2 && in_metres(column))
+      throw fail(
+          fmt::format(": no shot is 0.05 mm from the centre of the face: it reads like m; say --column "
+                      "'{}={}_m'",
+                      out.header, q.name));
     out.name = q.name + "_" + unit;
     out.median = loop::median(values);
     if (!values.empty() && !(out.median >= q.low && out.median <= q.high)) {
@@ -493,6 +637,32 @@ class Reading {
                              Range{q.low, q.high}.allowed(Unit{given, *dimension_of(given), si_of(given)}),
                              reads.empty() ? "" : ": it reads like " + reads, out.header, q.name));
     }
+    return out;
+  }
+
+  /// The cells whose value no reading can have, and which fill a field or stand several times among readings.
+  std::vector<bool> find_placeholders(const MonitorQuantity& q, const Row& raw, const std::string& unit,
+                                      bool comma) const {
+    std::vector<bool> out(raw.size()), far(raw.size());
+    std::map<double, std::size_t> times;
+    std::vector<double> value(raw.size(), NAN);
+    std::size_t inside = 0, filled = 0;
+    for (std::size_t i = 0; i < raw.size(); ++i) {
+      const auto cell = number(raw[i], comma, q.sides);
+      if (!cell) continue;
+      const double si = si_of(cell->unit.empty() ? unit : cell->unit) * cell->value;
+      value[i] = cell->value;
+      ++filled;
+      if (si >= q.low && si <= q.high) {
+        ++inside;
+        continue;
+      }
+      ++times[cell->value];
+      out[i] = fills_a_field(cell->value);
+      far[i] = std::abs(si) > 2 * std::max(std::abs(q.low), std::abs(q.high));
+    }
+    for (std::size_t i = 0; i < raw.size(); ++i)
+      if (far[i] && 2 * inside >= filled && times[value[i]] > 1) out[i] = true;
     return out;
   }
 
@@ -524,9 +694,10 @@ class Reading {
         }
       }
     }
-    if (role_[c] == "accuracy" || role_[c] == "hand") u.note = "read";
-    else if (!role_[c].empty() && role_[c] != "carry" && u.filled > 0) u.name = role_[c];
-    else if (std::ranges::any_of(o_.keep, [&](const std::string& k) { return plain(k) == plain(header); })) {
+    const std::string role = role_[c] == "aside" ? "" : role_[c];
+    if (role == "accuracy" || role == "hand" || role == "used" || role == "deleted") u.note = "read";
+    else if (!role.empty() && role != "carry" && u.filled > 0) u.name = role;
+    else if (std::ranges::any_of(o_.keep, [&](const std::string& k) { return letters(k) == letters(header); })) {
       u.name = plain(header);
       std::ranges::replace(u.name, ' ', '_');
       const std::string name = "kept_" + u.name;
@@ -534,7 +705,7 @@ class Reading {
       for (int k = 2; std::ranges::count(out_.columns, u.name, &Understood::name); ++k)
         u.name = fmt::format("{}_{}", name, k);
     }
-    if (role_[c].empty() || role_[c] == "carry") write_with_points(u);
+    if (role.empty() || role == "carry") write_with_points(u);
     out_.columns.push_back(std::move(u));
   }
 
@@ -571,8 +742,10 @@ class Reading {
     for (std::size_t c = 0; c < role_.size(); ++c) {
       if (role_[c] != "accuracy" || o_.modelled) continue;
       const std::string& header = out_.sheet.names[c];
-      const bool of_spin = says_any(header, {"spin"}), asks = says_any(header, {"measured"}),
-                 of_axis = says_any(header, {"axis"});
+      // A header that the dictionary has for it is about spin in any language.
+      const bool of_spin = says_any(header, {"spin"}) ||
+                           (d_.bookkeeping_of(header) == "accuracy" && !says_any(header, {"accuracy"})),
+                 asks = says_any(header, {"measured"}), of_axis = says_any(header, {"axis"});
       const auto estimated = [&](const std::string& cell) {
         return d_.begins_or_ends("estimated", cell) || (asks && yes_or_no(cell) == false) ||
                says_any(cell, {"estim", "calc", "model", "simul", "predict"});
@@ -596,11 +769,22 @@ class Reading {
     }
   }
 
+  /// What a header asks of a hand that a yes or no answers.
+  enum class Asked { nothing, left, right };
+  Asked asked_by(const std::string& header) const {
+    const std::string words = plain(header);
+    if (d_.says("lefty", header) || words.find("left handed") != words.npos) return Asked::left;
+    if (d_.says("righty", header) || words.find("right handed") != words.npos) return Asked::right;
+    return Asked::nothing;
+  }
+
   /// Whether a cell names the left hand (1), the right one (0), or says nothing of a hand.
-  std::optional<bool> left_hand(const std::string& cell, bool asked) const {
-    if (d_.says("left_hand", cell) || (asked && yes_or_no(cell) == true)) return true;
-    if (d_.says("right_hand", cell) || missing(cell) || (asked && yes_or_no(cell) == false)) return false;
-    return {};
+  std::optional<bool> left_hand(const std::string& cell, Asked asked) const {
+    const auto answer = yes_or_no(cell);
+    if (d_.says("left_hand", cell) || d_.says("lefty", cell)) return true;
+    if (d_.says("right_hand", cell) || d_.says("righty", cell) || missing(cell)) return false;
+    if (asked == Asked::nothing || !answer) return {};
+    return *answer == (asked == Asked::left);
   }
 
   /// A left-handed player's shots as a right-handed one's: what is signed towards the right turns round. The place on
@@ -609,27 +793,37 @@ class Reading {
     const Sheet& sheet = out_.sheet;
     std::vector<bool> left(sheet.rows.size(), o_.left_handed);
     for (const Row& row : sheet.before) {  // `Player: Jo, Handedness: Left`
-      const std::vector<std::string> words = words_of(plain(fmt::format("{}", fmt::join(row, " "))));
+      std::string line = fmt::format("{}", fmt::join(row, " "));
+      std::ranges::replace_if(
+          line, [](char c) { return std::string_view("()[]").find(c) != std::string_view::npos; }, ' ');
+      const std::vector<std::string> words = words_of(plain(line));
       for (std::size_t i = 0; i < words.size(); ++i) {  // the words beside the hand's name, not those further on
-        if (!names_a_hand(words[i])) continue;
+        if (!names_a_hand(words[i]) && d_.bookkeeping_of(words[i]) != "hand") continue;
         const std::string next = i + 1 < words.size() ? words[i + 1] : "";
-        const bool denied = next == "no" || next == "false" || left_hand(next, false) == false;
-        if (left_hand(next, false) == true ||
-            (i > 0 && left_hand(words[i - 1], false) == true && (next.empty() || !denied)))
+        const bool denied = next == "no" || next == "false" || left_hand(next, Asked::nothing) == false;
+        if (left_hand(next, Asked::nothing) == true ||
+            (i > 0 && left_hand(words[i - 1], Asked::nothing) == true && (next.empty() || !denied)))
           left.assign(left.size(), true);
       }
     }
     for (std::size_t c = 0; c < sheet.names.size(); ++c) {
       if (role_[c] != "hand") continue;
+      std::size_t right = 0;
       for (std::size_t i = 0; i < sheet.rows.size(); ++i) {
-        const auto hand = left_hand(sheet.rows[i][c], plain(sheet.names[c]).find("left handed") != std::string::npos);
+        const auto hand = left_hand(sheet.rows[i][c], asked_by(sheet.names[c]));
         if (!hand)
           throw InputError(
               fmt::format("{}: column '{}', shot {}: '{}' is neither left nor right; --column '{}=' leaves "
                           "it out, --left-handed mirrors every shot",
                           out_.file.string(), sheet.names[c], i + 1, sheet.rows[i][c], sheet.names[c]));
         left[i] = left[i] || *hand;
+        right += !*hand && !missing(sheet.rows[i][c]);
       }
+      if (o_.left_handed && right > 0)
+        out_.told.push_back(
+            fmt::format("column '{}' says right-handed in {} of {} shots, which --left-handed mirrors "
+                        "all the same",
+                        sheet.names[c], right, sheet.rows.size()));
     }
     for (const char* q : {"azimuth", "spin_axis", "sidespin", "club_path", "face_angle", "face_to_path"}) {
       Understood* u = find(q);
@@ -639,6 +833,37 @@ class Reading {
       count_again(*u);
     }
     out_.left_handed = std::size_t(std::ranges::count(left, true));
+  }
+
+  /// A spin that curves the shots to the other side than the one to which the file says they curve.
+  void compare_with_landing() {
+    Understood* spin = find("spin_axis") ? find("spin_axis") : find("sidespin");
+    const Understood* azimuth = find("azimuth");
+    if (!spin || !azimuth || out_.carry.cells.empty()) return;
+    const Sheet& sheet = out_.sheet;
+    for (std::size_t c = 0; c < sheet.names.size(); ++c) {
+      if (!d_.says("carry_side", sheet.names[c]) || !role_[c].empty() || is_empty(c)) continue;
+      const Row said = cells(c);
+      const bool comma = decimal_comma(said, sheet, sheet.names[c], out_.file);
+      const std::string unit = stated_length(c).empty() ? out_.carry.name : stated_length(c);
+      const double turn = sign_in(sheet.names[c], Sides::across).sign < 0 ? -1 : 1;
+      std::vector<std::pair<double, double>> both;  // spin, and by how much the side exceeds that of a straight flight
+      for (std::size_t i = 0; i < out_.shots; ++i) {
+        const auto side = number(said[i], comma, Sides::across);
+        const auto x = plain_number(spin->cells[i]), a = plain_number(azimuth->cells[i]),
+                   carry = plain_number(out_.carry.cells[i]);
+        if (!side || !x || !a || !carry || *carry <= 0) continue;
+        const double across = (side->sided ? 1 : turn) * side->value * si_of(unit) / (*carry * si_of(out_.carry.name));
+        both.emplace_back(*x, across - std::sin(*a * split_unit(azimuth->name).unit->si));
+      }
+      double n = double(both.size()), sx = 0, sy = 0, xx = 0, yy = 0, xy = 0;
+      for (const auto& [x, y] : both) sx += x / n, sy += y / n;
+      for (const auto& [x, y] : both) xx += (x - sx) * (x - sx), yy += (y - sy) * (y - sy), xy += (x - sx) * (y - sy);
+      if (n >= 8 && xy < -0.6 * std::sqrt(xx * yy))
+        spin->remark(fmt::format("shots curve to the other side by '{}': --column '{}=-{}' turns it", sheet.names[c],
+                                 spin->header, spin->name));
+      return;
+    }
   }
 
   void leave_out_zeros() {
@@ -691,9 +916,16 @@ class Reading {
 
   void leave_out_copies() {
     // Spin stands twice in most exports: rate and tilt are what is measured, back and side follow from them.
-    if (const auto* rate = find("spin_rate"), *axis = find("spin_axis"); rate && rate->filled && axis && axis->filled)
-      for (const char* copy : {"backspin", "sidespin"})
-        if (Understood* u = find(copy)) u->name.clear(), u->note = "follows from rate and axis";
+    // Where a row has the one and not the other, nothing follows.
+    Understood *rate = find("spin_rate"), *axis = find("spin_axis"), *back = find("backspin"), *side = find("sidespin");
+    if (rate && rate->filled && axis && axis->filled) {
+      const auto has = [](const Understood* u, std::size_t row) { return u && !u->cells[row].empty(); };
+      bool follows = true;
+      for (std::size_t row = 0; row < rate->cells.size(); ++row)
+        follows = follows && (has(rate, row) && has(axis, row) ? true : !has(back, row) && !has(side, row));
+      for (Understood* u : {back, side})
+        if (u && follows) u->name.clear(), u->note = "follows from rate and axis";
+    }
     for (Understood& u : out_.columns)
       if (!u.name.empty() && u.filled == 0) {
         u.name.clear();
@@ -715,20 +947,16 @@ class Reading {
         throw InputError(
             fmt::format("{}: column '{}' is empty: without the speed of the {} there is no blow to compute",
                         out_.file.string(), empty, what));
-      throw InputError(fmt::format("{}: no column of {} speed; --column 'header={}_speed_mph' names one",
-                                   out_.file.string(), what, what));
+      list_columns(out_.sheet.names, out_.sheet.rows.front(), d_);
+      throw InputError(
+          fmt::format("{}: no column of {} speed; --column 'header={}_speed_mph' names one: the loop "
+                      "computes the blow, which takes the speeds of club and ball",
+                      out_.file.string(), what, what));
     }
-    const double smash = ball->median / club->median;
     const auto said = [](const Understood& u) {
       const auto unit = split_unit(u.name).unit;
       return fmt::format("{:.4g} {}", u.median / unit->si, unit->suffix);
     };
-    if (!(smash > 0.8 && smash < 1.62))
-      throw InputError(
-          fmt::format("{}: ball over club speed is {:.2f} in the median, no blow's ({} over {}): one of "
-                      "the two units is wrong; --column '{}=ball_speed_UNIT' or '{}=club_speed_UNIT' corrects it",
-                      out_.file.string(), smash, said(*ball), said(*club), ball->header, club->header));
-    if (out_.carry.cells.empty()) return;
     const auto numbers = [&](const Understood* u, double si) {
       Numbers out{std::vector<double>(out_.shots, NAN), si};
       for (std::size_t i = 0; u && i < out_.shots; ++i) out.value[i] = plain_number(u->cells[i]).value_or(NAN);
@@ -738,13 +966,96 @@ class Reading {
       const Understood* u = find(stem);
       return numbers(u, u ? split_unit(u->name).unit->si : 1);
     };
-    const auto ratio = carry_ratio(quantity("ball_speed"), quantity("launch_angle"), quantity("spin_rate"),
-                                   numbers(&out_.carry, si_of(out_.carry.name)));
-    if (ratio && !(*ratio > 1 / kCarryFits && *ratio < kCarryFits))
-      throw InputError(fmt::format(
-          "{}: '{}' is {:.2f} of what the ball's speed ({}), launch angle and spin make in the median: a unit "
-          "is wrong; --column '{}=ball_speed_UNIT' corrects the speed's, --column '{}=' leaves the carry out",
-          out_.file.string(), out_.carry.header, *ratio, said(*ball), ball->header, out_.carry.header));
+    // Recorded over computed carry, with the ball's speed and the carry in these units.
+    const auto carried = [&](double of_speed, double of_carry) -> std::optional<double> {
+      if (out_.carry.cells.empty()) return {};
+      Numbers speed = quantity("ball_speed");
+      speed.si = of_speed;
+      return carry_ratio(speed, quantity("launch_angle"), quantity("spin_rate"), numbers(&out_.carry, of_carry));
+    };
+    const double of_ball = split_unit(ball->name).unit->si, of_club = split_unit(club->name).unit->si;
+    const double smash = ball->median / club->median, expected = expected_smash();
+    const auto carry = carried(of_ball, si_of(out_.carry.name));
+    // The unit of a speed in which `off`, a ratio that should be 1, is much nearer to it than `now`; empty: none is.
+    const auto better = [](double now, double si, const auto& off) {
+      std::string best;
+      double least = std::min(std::log(kFits), std::abs(std::log(now)) / 2);
+      for (const char* unit : {"mph", "kmh", "mps"}) {
+        const std::optional<double> r = si_of(unit) == si ? std::nullopt : off(si_of(unit));
+        if (r && *r > 0 && std::abs(std::log(*r)) < least) least = std::abs(std::log(*r)), best = unit;
+      }
+      return best;
+    };
+    const auto option = [](const Understood& u, const char* stem, const std::string& unit) {
+      return fmt::format("--column '{}={}_{}'", u.header, stem, unit);
+    };
+    const bool carry_fits = carry && std::abs(std::log(*carry)) < std::log(kDoubtful);
+    const bool no_blow = !(smash > 0.8 && smash < 1.62);
+    if (no_blow || (expected > 0 && std::abs(std::log(smash / expected)) > std::log(kNoSmash))) {
+      std::string reads;
+      if (expected > 0) {
+        const double now = smash / expected;
+        const std::string other_club =
+            better(now, of_club, [&](double si) { return std::optional(now * of_club / si); });
+        const std::string other_ball =
+            better(now, of_ball, [&](double si) { return std::optional(now * si / of_ball); });
+        if (!other_club.empty() && (carry_fits || !carry || other_ball.empty()))
+          reads =
+              fmt::format("'{}' reads like {} ({})", club->header, other_club, option(*club, "club_speed", other_club));
+        if (!other_ball.empty() && !carry_fits)
+          reads += fmt::format("{}'{}' reads like {} ({})", reads.empty() ? "" : ", or ", ball->header, other_ball,
+                               option(*ball, "ball_speed", other_ball));
+      }
+      if (no_blow || !reads.empty())
+        throw InputError(fmt::format(
+            "{}: ball over club speed is {:.2f} in the median, no blow's ({} over {}): one of the two units is wrong; "
+            "{}",
+            out_.file.string(), smash, said(*ball), said(*club),
+            !reads.empty() ? reads
+                           : fmt::format("--column '{}=ball_speed_UNIT' or '{}=club_speed_UNIT' corrects it",
+                                         ball->header, club->header)));
+    }
+    if (!carry || carry_fits) return;
+    const std::string other = better(*carry, of_ball, [&](double si) { return carried(si, si_of(out_.carry.name)); });
+    std::string length;
+    for (const char* unit : {"yd", "m", "ft"})
+      if (const double r = *carry * si_of(unit) / si_of(out_.carry.name);
+          unit != out_.carry.name && std::abs(std::log(r)) < std::log(kFits))
+        length = unit;
+    if (other.empty() && *carry > 1 / kCarryFits && *carry < kCarryFits) return;
+    std::string reads;
+    if (!other.empty()) {
+      reads =
+          fmt::format("; the ball's speed reads like {}, and {} says so", other, option(*ball, "ball_speed", other));
+      if (of_ball == of_club) reads += fmt::format(" ({} for the club's)", option(*club, "club_speed", other));
+    }
+    if (!length.empty()) reads += fmt::format("; the carry reads like {}", length);
+    throw InputError(
+        fmt::format("{}: '{}' is {:.2f} of what the ball's speed ({}), launch angle and spin make in the median: a "
+                    "unit is wrong{}; "
+                    "{}--column '{}=' leaves the carry out",
+                    out_.file.string(), out_.carry.header, *carry, said(*ball), reads,
+                    other.empty() ? fmt::format("{} corrects the speed's, ", option(*ball, "ball_speed", "UNIT")) : "",
+                    out_.carry.header));
+  }
+
+  /// Ball over club speed that a rigid head makes with the loft at impact, in the median of the shots whose loft is
+  /// recorded or the club's nominal one; 0 where there is none.
+  double expected_smash() {
+    const Understood *loft = find("dynamic_loft"), *clubs = find("club");
+    constexpr double ball_mass = 0.04593, restitution = 0.8;
+    std::vector<double> ratios;
+    for (std::size_t i = 0; i < out_.shots; ++i) {
+      const NominalClub* club = d_.club(clubs ? clubs->cells[i] : club_);
+      const auto recorded = loft ? plain_number(loft->cells[i]) : std::nullopt;
+      if (!recorded && !club) continue;
+      const double angle = recorded ? *recorded * split_unit(loft->name).unit->si : club->loft * si_of("deg");
+      const double mass = club ? club->head_mass : 0.25;
+      // Along the normal by restitution; along the face the ball rolls off, with 2/7 of the head's speed.
+      ratios.push_back(
+          std::hypot((1 + restitution) * mass / (mass + ball_mass) * std::cos(angle), 2.0 / 7 * std::sin(angle)));
+    }
+    return ratios.empty() ? 0 : loop::median(ratios);
   }
 
   /// The header of a column that has no role and whose cells are clubs, by more than their numbers.
@@ -758,54 +1069,77 @@ class Reading {
   }
 
   /// What the loop needs and the file lacks comes from the clubs' nominal figures, said as such.
-  void add_nominal(const std::string& club_of_file) {
+  void add_nominal() {
     const Understood* clubs = find("club");
-    if (!clubs) out_.club = club_of_file;
+    if (!clubs) {
+      out_.club = club_;
+      if (!club_.empty() && club_ != o_.club)
+        out_.told.push_back(fmt::format("club, from the name of the file: {}", club_));
+    }
     std::vector<std::string>& unknown = out_.no_nominal;
-    const auto nominal = [&](double NominalClub::*what, std::string_view option) {
-      Understood u;
+    // Cells of a quantity, those that are empty from the shot's club.
+    const auto nominal = [&](double NominalClub::*what, std::string_view option, Understood u) {
+      u.cells.resize(out_.shots);
       for (std::size_t i = 0; i < out_.shots; ++i) {
+        if (!u.cells[i].empty()) continue;
         const std::string name = clubs ? clubs->cells[i] : out_.club;
         const NominalClub* entry = d_.club(name);
         if (!entry && !std::ranges::count(unknown, name)) unknown.push_back(name);
-        u.cells.push_back(entry ? fmt::format("{:g}", entry->*what) : "");
+        u.cells[i] = entry ? fmt::format("{:g}", entry->*what) : "";
         u.filled += entry != nullptr;
       }
-      if (u.filled == 0)
-        throw InputError(fmt::format(
-            "{}: {} is not in the file, and no club is known to take it from ({}); add a column, --club NAME "
-            "where the file names none, or a [[club]] to --dictionary",
-            out_.file.string(), option,
-            clubs ? fmt::format("{}: '{}'", clubs->header, clubs->cells.front())
-                  : fmt::format("no column of clubs; --column '{}=club' names one", looks_like_clubs())));
+      if (u.filled == 0) {
+        const std::string name = clubs ? clubs->cells.front() : out_.club;
+        throw InputError(
+            !name.empty()
+                ? fmt::format(
+                      "{}: {} is not a known club, and the file has no {}: a [[club]] in --dictionary FILE makes "
+                      "it known, --club NAME says which it is where every shot is of it; a column "
+                      "head_mass_kg serves, too",
+                      out_.file.string(), clubs ? fmt::format("'{}' ({})", name, clubs->header) : "'" + name + "'",
+                      option)
+                : fmt::format("{}: {} is not in the file, and no club is known to take it from (no column of clubs; "
+                              "--column '{}=club' names one); --club NAME names the club of every shot",
+                              out_.file.string(), option, looks_like_clubs()));
+      }
       return u;
     };
     if (!find("dynamic_loft")) {
-      Understood u = nominal(&NominalClub::loft, "dynamic loft");
-      u.header = "(nominal)";
-      u.name = "dynamic_loft_deg";
-      u.note = "not recorded: nominal of the club, +- 4 deg";
-      out_.columns.push_back(std::move(u));
+      out_.columns.push_back(nominal(&NominalClub::loft, "dynamic loft",
+                                     {.header = "(nominal)",
+                                      .name = "dynamic_loft_deg",
+                                      .note = "not recorded: nominal of the club, +- 4 deg",
+                                      .cells = {}}));
       out_.nominal_loft = true;
     }
-    Understood mass = nominal(&NominalClub::head_mass, "head mass");
-    mass.header = "(nominal)";
-    mass.name = "head_mass_kg";
-    mass.note = "not recorded: nominal of the club";
-    out_.columns.push_back(std::move(mass));
+    if (Understood* mass = find("head_mass")) {
+      const std::size_t recorded = mass->filled;
+      if (recorded < out_.shots) {
+        *mass = nominal(&NominalClub::head_mass, "head mass", *mass);
+        mass->remark(fmt::format("nominal of the club in {} of {} shots", mass->filled - recorded, out_.shots));
+      }
+    } else
+      out_.columns.push_back(nominal(
+          &NominalClub::head_mass, "head mass",
+          {.header = "(nominal)", .name = "head_mass_kg", .note = "not recorded: nominal of the club", .cells = {}}));
   }
 
-  /// Other balls, air and laws change a carry by a tenth or two, a wrong unit by a factor of 1.8 at least.
-  static constexpr double kCarryFits = 1.45;
+  /// Other balls, air and laws change a carry by a tenth or two, a wrong unit by a factor of 1.4 at least: beyond
+  /// kCarryFits a unit is wrong, beyond kDoubtful where another brings it within kFits.
+  static constexpr double kCarryFits = 1.45, kDoubtful = 1.25, kFits = 1.15;
+  /// Mishits and wedges change ball over club speed by less than this, km/h under mph by 1.61.
+  static constexpr double kNoSmash = 1.35;
 
   const ImportOptions& o_;
   const Dictionary& d_;
   const ByHand& by_hand_;
   Session out_;
+  std::string club_;  ///< of every shot, where no column names it
   std::string family_;
-  std::vector<std::string> role_;  ///< of every column; empty: none
-  std::string speed_unit_;         ///< of a file that names none; empty: not known
-  bool by_carry_ = false;          ///< it is not the layout's
+  std::vector<std::string> role_;                             ///< of every column; empty: none
+  std::vector<std::pair<std::size_t, double>> placeholders_;  ///< row and value that are no reading
+  std::string speed_unit_;                                    ///< of a file that names none; empty: not known
+  bool by_carry_ = false;                                     ///< it is not the layout's
 };
 
 }  // namespace
@@ -874,7 +1208,7 @@ void check_headers(const ImportOptions& o, const ByHand& by_hand, const std::vec
     });
   }
   for (const std::string& k : o.keep)
-    check("--keep", k, k, [&](const std::string& name, const Row&) { return plain(name) == plain(k); });
+    check("--keep", k, k, [&](const std::string& name, const Row&) { return letters(name) == letters(k); });
 }
 
 Understood* Session::find(std::string_view stem) {

@@ -49,6 +49,7 @@ struct Session {
   std::vector<Understood> columns;
   std::size_t shots = 0, other_clubs = 0, modelled = 0, left_handed = 0;
   std::vector<std::string> no_nominal;  ///< clubs that the dictionary does not know
+  std::vector<std::string> told;        ///< what was decided of the whole file, a sentence each
   bool nominal_loft = false;
   Understood carry;  ///< of the monitor's own flight model; its name is its unit; empty: none
 

@@ -5,11 +5,14 @@
 #include <utf8.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
+#include <cmath>
 #include <fstream>
 #include <iterator>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <set>
 #include <sstream>
 
@@ -54,9 +57,13 @@ std::string read_utf8(const fs::path& file) {
   return out;
 }
 
-/// The same, its unbreakable and narrow blanks as plain ones.
+/// The same, its unbreakable and narrow blanks as plain ones, and so what parts thousands in `6\u2019279`.
 std::string read_text(const fs::path& file) {
   std::string text = read_utf8(file);
+  const std::string_view mark = "\xE2\x80\x99";
+  for (std::size_t at = 0; (at = text.find(mark, at)) != text.npos; ++at)
+    if (at + mark.size() < text.size() && std::isdigit(static_cast<unsigned char>(text[at + mark.size()])))
+      text.replace(at, mark.size(), "'");
   for (const std::string_view blank : {"\xC2\xA0", "\xE2\x80\xAF", "\xE2\x80\x89"})
     for (std::size_t at = 0; (at = text.find(blank, at)) != text.npos; ++at) text.replace(at, blank.size(), " ");
   return text;
@@ -249,14 +256,19 @@ std::size_t known_cells(const Dictionary& d, const Row& row) {
 }
 
 /// Groups in the row above a header, each over its own columns and those right of it without one: `Speed` below `Ball`
-/// is `Ball Speed`. A name that is known and stands once needs no group, and none makes a name of a blank.
+/// is `Ball Speed`. A name that is known and stands once needs no group. Over a blank or a unit the word itself is the
+/// name.
 void name_by_groups(Row& names, const Row& groups, const Dictionary& d) {
   const Row alone = names;
   std::string group;
   for (std::size_t c = 0; c < std::min(names.size(), groups.size()); ++c) {
     if (!groups[c].empty()) group = groups[c];
     const std::string both = group + " " + alone[c];
-    const bool clear = plain(alone[c]).empty() || (is_known(d, alone[c]) && std::ranges::count(alone, alone[c]) == 1);
+    if (plain(alone[c]).empty()) {
+      if (!groups[c].empty() && is_known(d, both)) names[c] = trimmed(both);
+      continue;
+    }
+    const bool clear = is_known(d, alone[c]) && std::ranges::count(alone, alone[c]) == 1;
     if (!clear && is_known(d, both)) names[c] = both;
   }
 }
@@ -270,10 +282,7 @@ void list_names(const std::string& text, const Dictionary& d) {
     if (!rows.empty() && (widest.empty() || rows.front().size() > widest.front().size())) widest = std::move(rows);
   }
   if (widest.size() < 2) return;
-  fmt::print("columns and their first cells; fill in what each is, or leave the line out:\n");
-  for (std::size_t c = 0; c < widest[0].size(); ++c)
-    fmt::print("  --column '{}=?'    {}, ...\n", widest[0][c], c < widest[1].size() ? widest[1][c] : "");
-  fmt::print("with one of: {}; and its unit, as ball_speed_mph\n", fmt::join(d.quantity_names(), ", "));
+  list_columns(widest[0], widest[1], d);
 }
 
 /// Cells that are units or say nothing: most of those that say anything, and no number among them.
@@ -294,20 +303,26 @@ std::string club_heading(const Row& row, const Dictionary& d) {
   for (const std::string& c : row)
     if (!c.empty()) said.push_back(c);
   const auto letter = [](unsigned char c) { return std::isalpha(c) || c >= 0x80; };
-  if (said.size() == 1 && std::ranges::any_of(said[0], letter)) return said[0];
+  if (said.size() == 1) {
+    const auto colon = said[0].find(':');
+    if (colon != std::string::npos && d.bookkeeping_of(said[0].substr(0, colon)) == "club")
+      return trimmed(said[0].substr(colon + 1));
+    if (std::ranges::any_of(said[0], letter)) return said[0];
+  }
   if (said.size() == 2 && d.bookkeeping_of(said[0]) == "club") return said[1];
   return "";
 }
 
 /// Whether a column counts the shots, 1, 2, 3, ..., whatever its header: one above the row before, or 1 again.
-bool counts(const std::vector<Row>& rows, std::size_t column) {
+/// `any_order`: other numbers are those of shots, too.
+bool counts(const std::vector<Row>& rows, std::size_t column, bool any_order) {
   std::size_t steps = 0, numbers = 0;
   double last = 0;
   for (const Row& row : rows) {
     const auto x = plain_number(row[column]);
     if (!x) continue;
     ++numbers;
-    steps += *x == last + 1 || *x == 1;
+    steps += any_order || *x == last + 1 || *x == 1;
     last = *x;
   }
   return numbers > 2 && numbers == steps && 2 * numbers > rows.size();
@@ -338,24 +353,220 @@ bool dated(const std::vector<Row>& rows, std::size_t column, const Dictionary& d
   return 2 * dates > cells;
 }
 
-/// The rows below the header, which is given as it stands, as shots: units, repeated headers, summaries and lines that
-/// name a club are taken out.
+/// Whether a row names columns: two quantities, and no number.
+bool is_header(const Row& row, const Dictionary& d) {
+  std::set<std::string> quantities;
+  for (const std::string& c : row) {
+    if (plain_number(c)) return false;
+    if (const MonitorQuantity* q = d.quantity_of(c)) quantities.insert(q->name);
+  }
+  return quantities.size() >= 2;
+}
+
+/// What a known header stands for: a quantity or a role.
+std::string meaning(const Dictionary& d, const std::string& header) {
+  const MonitorQuantity* q = d.quantity_of(header);
+  return q ? q->name : d.bookkeeping_of(header);
+}
+
+/// Two headers whose cells mean the same.
+bool same_header(const std::string& a, const std::string& b) {
+  if (lower(a) == lower(b)) return true;
+  const HeaderSign x = sign_in(a, Sides::any), y = sign_in(b, Sides::any);
+  return letters(a) == letters(b) && unit_in(a) == unit_in(b) && x.sign == y.sign && x.strange == y.strange;
+}
+
+/// Where each column of a later part stands under the names of the first, which grow by those that only the part has.
+/// A quantity whose name or unit changes is refused: its cells would be read by the first one's.
+std::vector<std::size_t> places(const Row& part, Sheet& sheet, const Dictionary& d, const fs::path& file) {
+  constexpr auto none = std::size_t(-1);
+  std::vector<std::size_t> to(part.size(), none);
+  std::vector<bool> taken(sheet.names.size());
+  for (std::size_t c = 0; c < part.size(); ++c)
+    for (std::size_t k = 0; k < taken.size() && to[c] == none; ++k)
+      if (!taken[k] && same_header(part[c], sheet.names[k])) to[c] = k, taken[k] = true;
+  for (std::size_t c = 0; c < part.size(); ++c) {
+    if (to[c] != none) continue;
+    const std::string means = meaning(d, part[c]);
+    for (std::size_t k = 0; k < taken.size() && !means.empty(); ++k)
+      if (!taken[k] && meaning(d, sheet.names[k]) == means)
+        throw InputError(fmt::format("{}: a later header has '{}' where the first has '{}': import each part by itself",
+                                     file.string(), part[c], sheet.names[k]));
+    to[c] = sheet.names.size();
+    sheet.names.push_back(part[c]);
+  }
+  return to;
+}
+
+/// Rows below a later header, laid under the names of the first one: a part of the file may have its columns in another
+/// order. `header`: the first one as it stands. Returns the units of columns that only later parts have.
+Row lay_parts(Sheet& sheet, const Row& header, const Dictionary& d, const fs::path& file) {
+  const std::size_t width = sheet.names.size();
+  const auto begins_with = [](const Row& row, const Row& as, std::size_t n) {
+    return row.size() >= n && std::equal(row.begin(), row.begin() + long(n), as.begin());
+  };
+  Row units, units_of_new;
+  std::vector<Row> rows;
+  std::optional<std::vector<std::size_t>> to;  // none: as under the first header
+  for (std::size_t i = 0; i < sheet.rows.size(); ++i) {
+    Row row = std::move(sheet.rows[i]);
+    if (row.size() < width && !to) row.resize(width);
+    if (begins_with(row, header, std::min(width, header.size()))) {
+      to.reset();
+      ++sheet.headers_again;
+      continue;
+    }
+    if (is_header(row, d)) {
+      Row names = row;
+      if (i + 1 < sheet.rows.size() && !is_row_of_units(sheet.rows[i + 1])) {  // a row of groups
+        Row below = sheet.rows[i + 1];
+        name_by_groups(below, row, d);
+        if (is_header(below, d) && known_cells(d, below) > known_cells(d, names)) names = std::move(below), ++i;
+      }
+      while (!names.empty() && names.back().empty()) names.pop_back();
+      to = places(names, sheet, d, file);
+      ++sheet.headers_again;
+      continue;
+    }
+    const bool of_units = is_row_of_units(row);
+    if (!to) {
+      if (of_units && units.empty()) units = row;
+      rows.push_back(std::move(row));
+      continue;
+    }
+    for (std::size_t c = to->size(); c < row.size(); ++c)
+      if (!row[c].empty())
+        throw InputError(
+            fmt::format("{}: below a later header, a row of {} cells stands under {} names: its values "
+                        "stand under the wrong ones",
+                        file.string(), row.size(), to->size()));
+    Row laid = of_units ? units : Row{};  // the units of columns that this part has not are not said anew
+    laid.resize(sheet.names.size());
+    units_of_new.resize(sheet.names.size());
+    for (std::size_t c = 0; c < std::min(to->size(), row.size()); ++c)
+      if (const std::size_t k = (*to)[c]; of_units && k >= width) units_of_new[k] = row[c];
+      else laid[k] = row[c];
+    rows.push_back(std::move(laid));
+  }
+  sheet.rows = std::move(rows);
+  return units_of_new;
+}
+
+/// Finds rows that are the mean, the deviation, the least or the greatest of the shots above them: summaries without a
+/// word that says so.
+class Statistics {
+ public:
+  /// `columns`: whose numbers are compared.
+  Statistics(std::vector<std::size_t> columns, bool comma) : columns_(std::move(columns)), comma_(comma) {}
+
+  /// Whether `row` is one of all shots so far, or of those since the last `restart`; else it counts as a shot.
+  bool take(const Row& row) {
+    std::vector<std::optional<Cell>> cells;
+    for (const std::size_t c : columns_) cells.push_back(number(row[c], comma_, Sides::any));
+    if (of(all_, cells, row) || of(run_, cells, row)) return true;
+    add(all_, cells, row);
+    add(run_, cells, row);
+    return false;
+  }
+  void restart() { run_.clear(); }
+
+ private:
+  struct Column {
+    double n = 0, first = 0, sum = 0, squares = 0, low = 0, high = 0, step = 1;  ///< sums of what exceeds the first
+  };
+  using Columns = std::vector<Column>;
+
+  /// One in the last digit of a cell.
+  double step(const std::string& cell) const {
+    const auto point = cell.find_last_of(comma_ ? "," : ".");
+    if (point == std::string::npos) return 1;
+    std::size_t digits = 0;
+    while (point + digits + 1 < cell.size() && std::isdigit(static_cast<unsigned char>(cell[point + digits + 1])))
+      ++digits;
+    return std::pow(10.0, -double(digits));
+  }
+
+  void add(Columns& to, const std::vector<std::optional<Cell>>& cells, const Row& row) const {
+    to.resize(columns_.size());
+    for (std::size_t k = 0; k < cells.size(); ++k) {
+      if (!cells[k]) continue;
+      Column& c = to[k];
+      const double x = cells[k]->value;
+      if (c.n == 0) c.first = c.low = c.high = x;
+      c.n += 1;
+      c.sum += x - c.first;
+      c.squares += (x - c.first) * (x - c.first);
+      c.low = std::min(c.low, x), c.high = std::max(c.high, x);
+      c.step = std::min(c.step, step(row[columns_[k]]));
+    }
+  }
+
+  /// The same statistic in every column, four of which vary: no shot is so near to the mean in each.
+  bool of(const Columns& above, const std::vector<std::optional<Cell>>& cells, const Row& row) const {
+    std::array<bool, 5> fits;
+    fits.fill(true);
+    std::size_t varying = 0;
+    for (std::size_t k = 0; k < above.size(); ++k) {
+      const Column& c = above[k];
+      if (!cells[k] || c.n < 5) continue;
+      const double x = cells[k]->value, last = step(row[columns_[k]]), mean = c.sum / c.n;
+      const double squares = std::max(0.0, c.squares - c.n * mean * mean);
+      const double rounding = 0.6 * last + c.step / std::sqrt(c.n);
+      varying += c.high - c.low > 4 * rounding;
+      const auto near = [&](double is, double within) { return std::abs(x - is) < within; };
+      const std::array now = {near(c.first + mean, rounding), near(std::sqrt(squares / c.n), rounding),
+                              near(std::sqrt(squares / (c.n - 1)), rounding), near(c.low, 0.6 * last),
+                              near(c.high, 0.6 * last)};
+      for (std::size_t f = 0; f < fits.size(); ++f) fits[f] = fits[f] && now[f];
+    }
+    return varying >= 4 && std::ranges::count(fits, true) > 0;
+  }
+
+  std::vector<std::size_t> columns_;
+  bool comma_;
+  Columns all_, run_;
+};
+
+/// Takes out rows that `is` says of, and what their lines name as the club.
+template <typename Is>
+std::size_t take_out(std::vector<Row>& shots, Row& clubs, Is is) {
+  std::vector<Row> left;
+  Row left_clubs;
+  for (std::size_t r = 0; r < shots.size(); ++r)
+    if (!is(shots[r], clubs[r])) left.push_back(std::move(shots[r])), left_clubs.push_back(std::move(clubs[r]));
+  const std::size_t n = shots.size() - left.size();
+  shots = std::move(left), clubs = std::move(left_clubs);
+  return n;
+}
+
+/// The rows below the header, which is given as it stands, as shots: units, repeated headers, summaries, lines of text
+/// and lines that name a club are taken out.
 void take_shots(Sheet& sheet, const Row& header, const Dictionary& d, const fs::path& file) {
+  const Row units_of_new = lay_parts(sheet, header, d, file);
   const std::size_t width = sheet.names.size();
   std::string club;
   for (const Row& row : sheet.before)
     if (const std::string named = club_heading(row, d); d.club(named)) club = named;
+  std::vector<std::string> roles;
   std::vector<bool> dates;
-  for (std::size_t c = 0; c < width; ++c)
-    dates.push_back(d.bookkeeping_of(sheet.names[c]) == "session" && dated(sheet.rows, c, d));
+  std::vector<std::size_t> quantities, speeds;
+  for (std::size_t c = 0; c < width; ++c) {
+    roles.push_back(d.bookkeeping_of(sheet.names[c]));
+    dates.push_back(roles[c] == "session" && dated(sheet.rows, c, d));
+    const MonitorQuantity* q = d.quantity_of(sheet.names[c]);
+    // `Club` may be its speed or its name.
+    const bool names = !roles[c].empty() && std::ranges::any_of(sheet.rows, [&](const Row& row) {
+      return c < row.size() && !missing(row[c]) && !plain_number(row[c]) && unit_of(row[c]).empty();
+    });
+    if (!q || names) continue;
+    quantities.push_back(c);
+    if (q->name == "ball_speed" || q->name == "club_speed") speeds.push_back(c);
+  }
   std::vector<Row> shots;
   Row clubs;
+  bool summaries_follow = false;  // below a line that says so
   for (Row& row : sheet.rows) {
     row.resize(std::max(width, row.size()));
-    if (std::ranges::equal(row.begin(), row.begin() + long(width), header.begin(), header.begin() + long(width))) {
-      ++sheet.headers_again;
-      continue;
-    }
     if (is_row_of_units(row)) {
       if (shots.empty() && sheet.units.empty()) sheet.units = row;
       else if (!std::ranges::equal(row.begin(), row.begin() + long(width), sheet.units.begin(),
@@ -365,20 +576,39 @@ void take_shots(Sheet& sheet, const Row& header, const Dictionary& d, const fs::
       else ++sheet.units_again;
       continue;
     }
+    const std::string named = club_heading(row, d);
+    if (d.says("summary", named)) {
+      summaries_follow = true;
+      sheet.notes.push_back(named);
+      continue;
+    }
     // Where blocks have clubs, the next line of this form names one too, known or not.
-    if (const std::string named = club_heading(row, d); !named.empty() && (d.club(named) || !club.empty())) {
+    if (!named.empty() && (d.club(named) || !club.empty())) {
       club = named;
+      summaries_follow = false;
+      continue;
+    }
+    if (std::ranges::none_of(quantities, [&](std::size_t c) { return has_digit(row[c]); }) && !quantities.empty()) {
+      const auto said = std::ranges::count_if(row, [](const std::string& c) { return !missing(c); });
+      const bool numbers = said > 1 && std::ranges::any_of(row, has_digit);
+      if (numbers) ++sheet.speedless;
+      else if (said > 0) sheet.notes.push_back(trimmed(fmt::format("{}", fmt::join(row, " "))));
       continue;
     }
     // Summaries stand where the club's, the player's, the session's or the shot's name would.
-    bool summary = false;
+    const auto names_club = [&](std::size_t c) { return roles[c] == "club" && d.club(row[c]); };
+    bool known_club = false;
+    for (std::size_t c = 0; c < width; ++c) known_club = known_club || names_club(c);
+    bool summary = summaries_follow;
     for (std::size_t c = 0; c < width && !summary; ++c) {
-      const std::string role = d.bookkeeping_of(sheet.names[c]);
+      const std::string& role = roles[c];
       if (c != 0 && role != "club" && role != "shot" && role != "player" && role != "session") continue;
       const bool no_date = dates[c] && !has_digit(row[c]);
-      const bool named = role == "player" || (role == "session" && !no_date);  // may hold such a word
-      summary = (named ? d.says("summary", row[c]) : d.begins_or_ends("summary", row[c])) ||
-                ((role == "shot" || no_date) && d.says("extreme", row[c]));
+      const bool may_hold_it = role == "player" || (role == "session" && !no_date);
+      const bool extreme = role == "shot" || no_date || (role == "club" && !known_club);
+      summary = (no_date && !missing(row[c])) ||
+                (may_hold_it ? d.says("summary", row[c]) : d.begins_or_ends("summary", row[c])) ||
+                (extreme && d.says("extreme", row[c]));
     }
     if (summary) {
       ++sheet.summaries;
@@ -393,21 +623,49 @@ void take_shots(Sheet& sheet, const Row& header, const Dictionary& d, const fs::
   }
   // Where a column counts the shots, a word in it is a summary's in another language.
   for (std::size_t c = 0; c < width; ++c) {
-    const std::string role = d.bookkeeping_of(sheet.names[c]);
-    if (!(role == "shot" || (c == 0 && role.empty() && !d.quantity_of(sheet.names[c]))) || !counts(shots, c)) continue;
-    for (std::size_t r = shots.size(); r-- > 0;)
-      if (!missing(shots[r][c]) && !plain_number(shots[r][c])) {
-        shots.erase(shots.begin() + long(r));
-        clubs.erase(clubs.begin() + long(r));
-        ++sheet.summaries;
-      }
+    const bool unnamed = c == 0 && roles[c].empty() && !d.quantity_of(sheet.names[c]);
+    if (!(roles[c] == "shot" || unnamed) || !counts(shots, c, !unnamed)) continue;
+    sheet.summaries += take_out(
+        shots, clubs, [&](const Row& row, const std::string&) { return !missing(row[c]) && !plain_number(row[c]); });
   }
+  const auto fast = [](const std::string& cell) {
+    const auto x = number(cell, false, Sides::none);
+    return !missing(cell) && (!x || x->value != 0);
+  };
+  const auto has_speed = [&](const Row& row) {
+    return std::ranges::any_of(speeds, [&](std::size_t c) { return fast(row[c]); });
+  };
+  if (std::ranges::any_of(shots, has_speed))
+    sheet.speedless += take_out(shots, clubs, [&](const Row& row, const std::string&) { return !has_speed(row); });
+  const bool comma =
+      sheet.delimiter != "," && std::ranges::any_of(shots, [&](const Row& row) {
+        return std::ranges::any_of(quantities, [&](std::size_t c) { return row[c].find(',') != std::string::npos; });
+      });
+  Statistics statistics(quantities, comma);
+  std::string last_line, last_club;
+  sheet.summaries += take_out(shots, clubs, [&](const Row& row, const std::string& line) {
+    std::string named;
+    for (std::size_t c = 0; c < width; ++c)
+      if (roles[c] == "club") named += row[c];
+    if (line != last_line || (named != last_club && !named.empty())) statistics.restart(), last_club = named;
+    last_line = line;
+    return statistics.take(row);
+  });
   const auto says_club = [&](std::size_t c) {
-    return d.bookkeeping_of(sheet.names[c]) == "club" &&
-           std::ranges::any_of(shots, [&](const Row& row) { return d.club(row[c]) != nullptr; });
+    return roles[c] == "club" && std::ranges::any_of(shots, [&](const Row& row) { return d.club(row[c]) != nullptr; });
   };
   bool column = false;
   for (std::size_t c = 0; c < width; ++c) column = column || says_club(c);
+  if (!sheet.units.empty()) {
+    sheet.units.resize(width);
+    for (std::size_t c = 0; c < std::min(width, units_of_new.size()); ++c)
+      if (sheet.units[c].empty()) sheet.units[c] = units_of_new[c];
+    // A name that is known only with a unit has it here: `LAUNCH` above `deg`.
+    for (std::size_t c = 0; c < width; ++c)
+      if (const std::string both = sheet.names[c] + " [" + sheet.units[c] + "]";
+          !unit_of(sheet.units[c]).empty() && !is_known(d, sheet.names[c]) && d.quantity_of(both))
+        sheet.names[c] = both;
+  }
   if (!column && std::ranges::any_of(clubs, [](const std::string& c) { return !c.empty(); })) {
     sheet.names.push_back("Club (its line)");
     if (!sheet.units.empty()) sheet.units.resize(sheet.names.size());
@@ -425,7 +683,8 @@ Sheet read_table(std::string text, const Dictionary& d, const fs::path& file) {
     const std::vector<Row> rows = split(text, delimiter);
     for (std::size_t h = 0; h < std::min<std::size_t>(rows.size(), 30); ++h) {
       Row names = rows[h];
-      if (h > 0 && !is_row_of_units(names)) name_by_groups(names, rows[h - 1], d);
+      const bool numbers = std::ranges::any_of(names, [](const std::string& c) { return plain_number(c).has_value(); });
+      if (h > 0 && !numbers && !is_row_of_units(names)) name_by_groups(names, rows[h - 1], d);
       const std::size_t known = known_cells(d, names);
       if (known <= most) continue;
       most = known;
@@ -454,6 +713,13 @@ Sheet read_table(std::string text, const Dictionary& d, const fs::path& file) {
 }
 
 }  // namespace
+
+void list_columns(const Row& names, const Row& cells, const Dictionary& d) {
+  fmt::print("columns and their first cells; fill in what each is, or leave the line out:\n");
+  for (std::size_t c = 0; c < names.size(); ++c)
+    fmt::print("  --column '{}=?'    {}, ...\n", names[c], c < cells.size() ? cells[c] : "");
+  fmt::print("with one of: {}; and its unit, as ball_speed_mph\n", fmt::join(d.quantity_names(), ", "));
+}
 
 Sheet read_sheet(const fs::path& file, const Dictionary& d) {
   const std::string text = read_text(file);

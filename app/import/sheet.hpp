@@ -19,10 +19,15 @@ struct Sheet {
   std::string family;     ///< units of that layout: imperial, metric
   std::string delimiter = "JSON";
   std::vector<Row> before;                                                      ///< rows above the header
+  std::vector<std::string> notes;                                               ///< lines of text below it
   std::size_t summaries = 0, headers_again = 0, units_again = 0, messages = 0;  ///< rows passed over
+  std::size_t speedless = 0;                                                    ///< rows without any speed, likewise
 };
 
 /// Throws InputError in one sentence.
 Sheet read_sheet(const std::filesystem::path& file, const Dictionary& dictionary);
+
+/// Prints columns and what stands in them, as options to fill in.
+void list_columns(const Row& names, const Row& cells, const Dictionary& dictionary);
 
 }  // namespace hosel::app

@@ -575,7 +575,7 @@ INSTANTIATE_TEST_SUITE_P(
                "Chipper,,,,\nNo.,Club Speed (mph),Ball Speed (mph),Launch Angle,Spin Rate\n1,70,90,20,4000\n",
                "",
                {{"ball_speed_mph", {115, 90}}, {"dynamic_loft_deg", {23.5, kNone}}},
-               {"clubs: 7 Iron 1, Chipper 1", "no nominal figures for: Chipper"}},
+               {"clubs: 7 Iron 1, Chipper 1", "not a known club: Chipper"}},
         Layout{"ListsOfShotsWithTheirClub",
                R"({"player":"Jo","handed":"LH","average":{"ballSpeed":60,"clubSpeed":44},"groups":[
 {"club":"7 Iron","strokes":[{"ballSpeed":50,"clubSpeed":36,"launchAngle":16,"launchDirection":1,"spinRate":6400}]},
@@ -667,6 +667,54 @@ INSTANTIATE_TEST_SUITE_P(
                "",
                {},
                {"ball_speed_mph            2       111.7"}},
+        Layout{"AWordAboveABlank",
+               "SHOT,CLUB,BALL,LAUNCH,SPIN,CLUB\n,,SPEED (MPH),ANGLE (DEG),RATE (RPM),SPEED (MPH)\n"
+               "1,7i,115,16,6400,82\n2,7i,116,16.5,6500,82\n",
+               "",
+               {{"ball_speed_mph", {115, 116}}, {"club_speed_mph", {82, 82}}, {"launch_angle_deg", {16, 16.5}}},
+               {"clubs: 7i 2"}},
+        Layout{"AUnitBelowMakesAName",
+               "CLUB,BALL SPEED,LAUNCH,BACK,SIDE,CLUB SPEED\n,MPH,DEG,RPM,DEG,MPH\n7i,115,16,6400,-1,82\n"
+               "7i,116,16.5,6500,2,82\n",
+               "",
+               {{"launch_angle_deg", {16, 16.5}}, {"backspin_rpm", {6400, 6500}}, {"azimuth_deg", {-1, 2}}},
+               {}},
+        Layout{"ABrandBesideTheClub",
+               "Club,Club Type,Ball Speed (mph),Club Speed (mph),Launch Angle,Spin Rate\n"
+               "TaylorMade P790,7 Iron,115,82,16,6400\nTaylorMade P790,8 Iron,110,81,18,7000\n",
+               "",
+               {{"club_speed_mph", {82, 81}}, {"dynamic_loft_deg", {23.5, 26.5}}},
+               {"clubs: 7 Iron 1, 8 Iron 1"}},
+        Layout{"CellsOfManyForms",
+               "Club;Ball Speed (mph);Club Speed (mph);Launch Angle;Launch Direction;Club Path;Spin Rate;Dynamic Loft\n"
+               "7i;115;82;16;0.4-;2.8 in to out;6’279;22\n7i;116;#DIV/0!;16;(0.6);1.1 out to in;6’300;Err\n"
+               "7i;117;82;16;0.4+;?;6’400;22\n",
+               "",
+               {{"azimuth_deg", {-0.4, -0.6, 0.4}},
+                {"club_path_deg", {2.8, -1.1, kNone}},
+                {"spin_rate_rpm", {6279, 6300, 6400}},
+                {"dynamic_loft_deg", {22, kNone, 22}}},
+               {}},
+        Layout{"TheHeadsMassIsRecorded",
+               "Club,Head Mass (g),Ball Speed (mph),Club Speed (mph),Launch Angle,Spin Rate,Dynamic Loft\n"
+               "Mine,271,115,82,16,6400,22\nYours,265,116,82,16,6500,22\n",
+               "",
+               {{"head_mass_kg", {0.271, 0.265}}},
+               {"g made kg"}},
+        Layout{
+            "GarminInDutch",
+            "Datum,Speler,Clubnaam,Type club,Clubsnelh.,Balsnelheid,Slaghoek,Spinsnelheid,Type draaisnelheid,Spinas\n"
+            ",,,,[km/u],[km/u],[deg],[rpm],,[deg]\n05/11/24,Jo,G430,IJzer 7,130.1,180.3,17,6400,Gemeten,2.5\n"
+            "05/11/24,Jo,G430,IJzer 7,131.2,181.4,17.4,6100,Geschat,-1.5\n",
+            "",
+            {{"ball_speed_kmh", {180.3, 181.4}}, {"spin_rate_rpm", {6400, kNone}}},
+            {"clubs: IJzer 7 2", "left out (--modelled takes it): 1 of 2"}},
+        Layout{"DatesBesideAWord",
+               "Date,Ball Speed (mph),Club Speed (mph),Launch Angle,Spin Rate\n2024-05-12,115,82,16,6400\n"
+               "2024-05-12,116,82,16,6500\n2024-05-12,117,83,16,6500\nKeskipoikkeama,1,0.6,0,57\n",
+               "--club 7i",
+               {{"ball_speed_mph", {115, 116, 117}}},
+               {"1 summary row"}},
         Layout{"SignTurnedByHand",
                "Club,Ball Speed (mph),Club Speed (mph),Launch Angle,Spin Rate,Dynamic Loft,Strike\n"
                "7i,115,82,16,6400,22,3\n7i,116,82,16,6400,22,-4\n",
@@ -911,5 +959,316 @@ TEST(Import, KeptColumnsOfOneNameStayApart) {
   EXPECT_EQ(shots.find("kept_mat_2")->text[1], "dry");
 }
 
+/// A later header places its own columns; a quantity that changes its unit, its name or its signs there is refused.
+TEST(Import, EachPartIsReadByItsOwnHeader) {
+  const fs::path dir = test::fresh_directory("import_parts");
+  const std::string names = "Club,Ball Speed (mph),Club Speed (mph),Launch Angle,Spin Rate,Club Path (in-out +)\n",
+                    first = names + "7i,115,82,16,6400,2\n";
+  const auto o = import_text(dir, first +
+                                      "Club,Launch Angle,Club Speed (mph),Apex,Ball Speed (mph),Spin Rate\n"
+                                      "8i,18,81,90,110,7000\n" +
+                                      names + "7i,116,82,16,6500,3\n");
+  ASSERT_EQ(o.status, 0) << o.text;
+  const loop::Shots shots = imported_shots(dir);
+  for (const auto& [name, of_second] :
+       {std::pair{"ball_speed_mph", 110.0}, {"club_speed_mph", 81}, {"spin_rate_rpm", 7000}}) {
+    ASSERT_EQ(shots.find(name)->value.size(), 3u);
+    EXPECT_NEAR(shots.find(name)->native(1), of_second, 1e-9) << name;
+  }
+  EXPECT_TRUE(std::isnan(shots.find("club_path_deg")->value[1]));
+  EXPECT_NEAR(shots.find("club_path_deg")->native(2), 3, 1e-9);
+  EXPECT_NE(o.text.find("2 repeated headers"), std::string::npos) << o.text;
+  for (const auto& [head, why] :
+       {std::pair{"Club,Ball Speed (km/h),Club Speed (mph),Launch Angle,Spin Rate,Club Path (in-out +)",
+                  "a later header has 'Ball Speed (km/h)' where the first has 'Ball Speed (mph)'"},
+        {"Club,Ball Speed (mph),Club Speed (mph),Launch Angle,Spin Rate,Club Path (in-out -)",
+         "a later header has 'Club Path (in-out -)'"}}) {
+    fs::remove_all(dir / "case");
+    test::expect_refused(import_text(dir, first + head + "\n8i,185,81,18,7000,2\n"), why);
+  }
+}
+
+/// Letters that are not Latin are kept where headers and names are compared; accents are not.
+TEST(Import, OtherScriptsHaveNamesOfTheirOwn) {
+  const fs::path dir = test::fresh_directory("import_scripts");
+  test::write(dir / "d.toml",
+              "club = [{names = [\"アイアン七\"], head_mass_kg = 0.27, loft_deg = 24.0}, "
+              "{names = [\"ウェッジ\"], head_mass_kg = 0.29, loft_deg = 38.0}]\n");
+  const auto o = import_text(dir,
+                             "Клюшка,Скорость мяча,Скорость головки,Угол,Вращение,head_mass_kg,天気\n"
+                             "アイアン七,115,82,16,6400,0.27,晴れ\nウェッジ,90,76,26,8500,0.29,雨\n",
+                             "--column Клюшка=club --column 'Скорость мяча=ball_speed_mph' --column 'Скорость "
+                             "головки=club_speed_mph' --column Угол=launch_angle_deg --column Вращение=spin_rate_rpm "
+                             "--column 天気=ball --column head_mass_kg=head_mass_kg --dictionary '" +
+                                 (dir / "d.toml").string() + "'");
+  ASSERT_EQ(o.status, 0) << o.text;
+  const loop::Shots shots = imported_shots(dir);
+  EXPECT_NEAR(shots.find("ball_speed_mph")->native(1), 90, 1e-9);
+  EXPECT_NEAR(shots.find("club_speed_mph")->native(1), 76, 1e-9);
+  EXPECT_NEAR(shots.find("launch_angle_deg")->native(1), 26, 1e-9);
+  EXPECT_NEAR(shots.find("dynamic_loft_deg")->native(1), 38, 1e-9);
+  EXPECT_NEAR(shots.find("head_mass_kg")->native(1), 0.29, 1e-9);
+  EXPECT_EQ(shots.find("club")->text, (std::vector<std::string>{"アイアン七", "ウェッジ"}));
+}
+
+/// Speeds in km/h under mph: what carries them, and the other speed, say which unit fits.
+TEST(Import, TheUnitThatFitsIsNamed) {
+  const fs::path dir = test::fresh_directory("import_fits");
+  const auto refuse = [&](const char* cells, const std::string& why) {
+    test::expect_refused(
+        import_text(dir, std::string("Club,Ball Speed (mph),Club Speed (mph),Launch Angle,Spin Rate,Carry (yd)\n7i,") +
+                             cells + "\n7i," + cells + "\n"),
+        why);
+  };
+  // Within the factor of 1.45 that a carry may be off by itself.
+  refuse("182.5,134.3,17.4,6800,158",
+         "the ball's speed reads like kmh, and --column 'Ball Speed (mph)=ball_speed_kmh' says so "
+         "(--column 'Club Speed (mph)=club_speed_kmh' for the club's)");
+  refuse("113.4,134.3,17.4,6800,158", "'Club Speed (mph)' reads like kmh (--column 'Club Speed (mph)=club_speed_kmh')");
+  refuse("113.4,83.4,17.4,6800,474", "the carry reads like ft");
+  ASSERT_EQ(import_text(dir,
+                        "Club,Ball Speed (mph),Club Speed (mph),Launch Angle,Spin Rate,Carry (yd)\n"
+                        "7i,113.4,83.4,17.4,6800,128\n7i,113.4,83.4,17.4,6800,130\n")
+                .status,
+            0)
+      << "a range ball in the cold";
+}
+
+TEST(Import, WhatNoReadingCanBeIsMissing) {
+  const fs::path dir = test::fresh_directory("import_placeholders");
+  std::string text = "Club,Ball Speed (mph),Club Speed (mph),Launch Angle,Spin Rate,Dynamic Loft,Attack Angle\n";
+  for (int i = 0; i < 8; ++i)
+    text += fmt::format("7i,{},{},16,{},{},{}\n", 115 + i, i == 3 ? 9999 : 82, i == 3 ? 9999 : 6400,
+                        i == 3 ? 16777215 : 22, i > 5 ? 4711 : -4);
+  const auto o = import_text(dir, text);
+  ASSERT_EQ(o.status, 0) << o.text;
+  const loop::Shots shots = imported_shots(dir);
+  for (const char* name : {"club_speed_mph", "spin_rate_rpm", "dynamic_loft_deg"})
+    for (std::size_t i = 0; i < 8; ++i) EXPECT_EQ(std::isnan(shots.find(name)->value[i]), i == 3) << name << i;
+  EXPECT_TRUE(std::isnan(shots.find("attack_angle_deg")->value[7]));
+  for (const char* said : {"9999 is no reading: 1", "16777215 is no reading: 1", "4711 is no reading: 2"})
+    EXPECT_NE(o.text.find(said), std::string::npos) << said << o.text;
+}
+
+/// Rows that are no shots: without a speed, lines of text, and statistics whatever they are called.
+TEST(Import, RowsThatAreNoShots) {
+  const fs::path dir = test::fresh_directory("import_no_shots");
+  const std::string head = "Player,Club,Ball Speed (mph),Club Speed (mph),Launch Angle,Spin Rate\n";
+  std::string shots;
+  for (int i = 0; i < 6; ++i)  // means 114.5, 82.75, 16.5, 6450
+    shots += fmt::format("Jo,7i,{},{},{},{}\n", 112 + i, 82 + 0.3 * i, 15.5 + 0.4 * ((2 * i) % 6),
+                         6200 + 100 * ((3 * i) % 6));
+  const auto good = [&](const std::string& rows, const std::string& said) {
+    fs::remove_all(dir / "case");
+    const auto o = import_text(dir, head + shots + rows);
+    ASSERT_EQ(o.status, 0) << rows << o.text;
+    EXPECT_EQ(imported_shots(dir).rows(), 6u) << rows << o.text;
+    EXPECT_NE(o.text.find(said), std::string::npos) << said << o.text;
+  };
+  good("Jo,7i,,,,\nJo,7i,0,0,0,0\n", "2 rows without a speed");
+  good("\nExported 2024-05-11 by v3.2.1\n", "1 line of text below the header");
+  for (const char* name :
+       {"Max", "Worst", "Target", "Tour", "Streuung", "Écart type", "Desv. est.", "Snitt", "平均", "標準偏差"})
+    good(fmt::format("Jo,{},100,80,15,6000\n", name), "1 summary row");
+}
+
+/// A row of means or deviations under no name that is known, or none.
+TEST(Import, StatisticsWithoutAWordAreNoShots) {
+  const fs::path dir = test::fresh_directory("import_statistics");
+  const std::string head = "Player,Ball Speed (mph),Club Speed (mph),Launch Angle,Spin Rate,Attack Angle\n";
+  const std::vector<std::vector<double>> rows = {{112.1, 81.8, 16.9, 6310, -3.2}, {115.4, 83.0, 15.2, 6120, -4.4},
+                                                 {109.8, 80.1, 18.3, 6800, -2.1}, {113.3, 82.2, 17.0, 6511, -5.0},
+                                                 {114.0, 82.9, 16.1, 6275, -3.9}, {110.7, 81.1, 17.7, 6642, -4.7}};
+  std::string shots, mean = "Xyz", deviation = "Uvw";
+  for (const auto& r : rows) shots += fmt::format("Jo,{},{},{},{},{}\n", r[0], r[1], r[2], r[3], r[4]);
+  for (std::size_t c = 0; c < 5; ++c) {
+    double sum = 0, squares = 0;
+    for (const auto& r : rows) sum += r[c] / 6;
+    for (const auto& r : rows) squares += (r[c] - sum) * (r[c] - sum) / 5;
+    mean += fmt::format(",{:.{}f}", sum, c == 3 ? 0 : 1);
+    deviation += fmt::format(",{:.{}f}", std::sqrt(squares), c == 3 ? 0 : 1);
+  }
+  const auto o = import_text(dir, head + shots + mean + "\n" + deviation + "\n", "--club 7i");
+  ASSERT_EQ(o.status, 0) << o.text;
+  EXPECT_EQ(imported_shots(dir).rows(), 6u) << o.text;
+  EXPECT_NE(o.text.find("2 summary rows"), std::string::npos) << o.text;
+}
+
+TEST(Import, HandsUnderAnyHeader) {
+  const fs::path dir = test::fresh_directory("import_hands");
+  const auto azimuth = [&](const std::string& header, const std::string& cell, const std::string& before = "") {
+    fs::remove_all(dir / "case");
+    const auto o =
+        import_text(dir, before + header + (header.empty() ? "" : ",") +
+                             "Club,Ball Speed (mph),Club Speed (mph),Launch Angle,Launch Direction,Spin Rate\n" + cell +
+                             (header.empty() ? "" : ",") + "7i,115,82,16,1.5,6400\n");
+    EXPECT_EQ(o.status, 0) << header << o.text;
+    return o.status == 0 ? imported_shots(dir).find("azimuth_deg")->native(0) : 0;
+  };
+  for (const auto& [header, cell] : {std::pair{"Händigkeit", "Links"},
+                                     {"Spielhand", "Linkshänder"},
+                                     {"Main", "Gaucher"},
+                                     {"Mano", "Zurdo"},
+                                     {"利き手", "左"},
+                                     {"Stance", "Left"},
+                                     {"Righty", "No"},
+                                     {"Right Handed", "No"},
+                                     {"Swinger", "Lefty"}})
+    EXPECT_NEAR(azimuth(header, cell), -1.5, 1e-9) << header;
+  EXPECT_NEAR(azimuth("", "", "Player: Bo (Left-Handed)\n"), -1.5, 1e-9);
+  EXPECT_NEAR(azimuth("Stance", "Open"), 1.5, 1e-9);
+  EXPECT_NEAR(azimuth("Miss", "Left"), 1.5, 1e-9) << "the side of something else";
+  const auto o = import_text(
+      test::fresh_directory("import_hands_both"),
+      "Hand,Club,Ball Speed (mph),Club Speed (mph),Launch Angle,Spin Rate\nR,7i,115,82,16,6400\n", "--left-handed");
+  EXPECT_NE(o.text.find("column 'Hand' says right-handed in 1 of 1 shots"), std::string::npos) << o.text;
+}
+
+TEST(Import, PlacesOnTheFaceInMetres) {
+  const fs::path dir = test::fresh_directory("import_metres");
+  const auto o = import_text(
+      dir,
+      R"([{"club":"7i","ballSpeed":51.1,"clubSpeed":36.6,"launchAngle":16,"spinRate":6400,"carry":146,"impactOffset":0.0113},
+{"club":"7i","ballSpeed":51.9,"clubSpeed":36.9,"launchAngle":16,"spinRate":6400,"carry":148,"impactOffset":-0.004}])");
+  ASSERT_EQ(o.status, 0) << o.text;
+  EXPECT_NEAR(imported_shots(dir).find("impact_toe_mm")->native(0), 11.3, 1e-9);
+  test::expect_refused(import_text(dir / "said",
+                                   "Club,Ball Speed (mph),Club Speed (mph),Launch Angle,Spin Rate,Impact Offset (mm)\n"
+                                   "7i,115,82,16,6400,0.011\n7i,115,82,16,6400,-0.004\n7i,115,82,16,6400,0.002\n"),
+                       "it reads like m");
+}
+
+/// What a column is taken for is told where its header says less than that.
+TEST(Import, WhatAHeaderDoesNotSayIsTold) {
+  const fs::path dir = test::fresh_directory("import_told");
+  std::string text =
+      "Club,Ball Speed (mph),Club Speed (mph),Launch Angle,Spin Rate (rpm)*,Loft (deg),Face Impact Horizontal (mm),"
+      "Use In Stat\n";
+  for (int i = 0; i < 7; ++i)
+    text += fmt::format("7i,{},82,16,6400,34.0,{},{}\n", 113 + i, i - 2, i == 5 ? "FALSE" : "TRUE");
+  const auto o = import_text(dir, text + "* Spin rate is estimated from launch data\n");
+  ASSERT_EQ(o.status, 0) << o.text;
+  const loop::Shots shots = imported_shots(dir);
+  EXPECT_EQ(shots.rows(), 6u);
+  EXPECT_EQ(shots.find("spin_rate_rpm"), nullptr);
+  EXPECT_NEAR(shots.find("dynamic_loft_deg")->native(0), 23.5, 1e-9);
+  for (const char* said : {"left out by 'Use In Stat': 1 shot", "1 line of text below the header",
+                           "Spin Rate (rpm)* (modelled by the instrument", "the club's own loft, not that at impact",
+                           "taken as towards the toe; Foresight has heel +"})
+    EXPECT_NE(o.text.find(said), std::string::npos) << said << o.text;
+}
+
+/// One name for a club, however it is written; of a file that has only its brand, --club says which.
+TEST(Import, ClubsByManyNames) {
+  const fs::path dir = test::fresh_directory("import_club_names");
+  const auto loft = [&](const std::string& club, const std::string& options = "") {
+    fs::remove_all(dir / "case");
+    const auto o = import_text(
+        dir, "Club,Ball Speed (mph),Club Speed (mph),Launch Angle,Spin Rate\n" + club + ",115,88,16,6400\n", options);
+    EXPECT_EQ(o.status, 0) << club << o.text;
+    return o.status == 0 ? imported_shots(dir).find("dynamic_loft_deg")->native(0) : 0;
+  };
+  for (const char* iron : {"7I - Srixon ZX5", "E7", "7er Eisen", "J7", "7番アイアン", "Ping i525 7 iron"})
+    EXPECT_NEAR(loft(iron), 23.5, 1e-9) << iron;
+  EXPECT_NEAR(loft("Driver 10.5°"), 13, 1e-9);
+  EXPECT_NEAR(loft("4 Hybrid 22°"), 20, 1e-9);
+  EXPECT_NEAR(loft("LW 58"), 46, 1e-9);
+  EXPECT_NEAR(loft("Irn", "--club 7i"), 23.5, 1e-9);
+  EXPECT_NEAR(loft("7I - Srixon ZX5", "--club 7i"), 23.5, 1e-9);
+  fs::remove_all(dir / "case");
+  test::expect_refused(
+      import_text(dir, "Club,Ball Speed (mph),Club Speed (mph),Launch Angle,Spin Rate\nP790,115,82,16,6400\n"),
+      "'P790' (Club) is not a known club");
+  // The name of one file, too.
+  test::write(dir / "7iron.csv", "Ball Speed (mph),Club Speed (mph),Launch Angle,Spin Rate\n115,82,16,6400\n");
+  const auto o = command("import '" + (dir / "7iron.csv").string() + "' --out '" + (dir / "case").string() + "'");
+  ASSERT_EQ(o.status, 0) << o.text;
+  EXPECT_NE(o.text.find("club, from the name of the file: 7iron"), std::string::npos) << o.text;
+}
+
+/// A header each in a file that has everything else: what it is taken as.
+TEST(Import, HeadersOfManyMakers) {
+  const fs::path dir = test::fresh_directory("import_headers");
+  for (const auto& [header, column] : {std::pair{"Vert Path (deg)", "attack_angle_deg"},
+                                       {"Horiz Path (deg)", "club_path_deg"},
+                                       {"V Launch (deg)", "launch_angle_deg"},
+                                       {"Launch Angle Vertical", "launch_angle_deg"},
+                                       {"Start Direction (deg)", "azimuth_deg"},
+                                       {"Ball Direction", "azimuth_deg"},
+                                       {"Back Spin Rate (rpm)", "backspin_rpm"},
+                                       {"Axis (deg)", "spin_axis_deg"},
+                                       {"Spin Axis Tilt (deg)", "spin_axis_deg"},
+                                       {"Club Path Angle", "club_path_deg"},
+                                       {"Face (deg)", "face_angle_deg"},
+                                       {"Face Ang.", "face_angle_deg"},
+                                       {"Club Face to Target", "face_angle_deg"},
+                                       {"Delivered Loft", "dynamic_loft_deg"},
+                                       {"D Loft", "dynamic_loft_deg"},
+                                       {"Horiz Impact (mm)", "impact_toe_mm"},
+                                       {"Toe/Heel (mm)", "impact_toe_mm"},
+                                       {"Aanvalshoek", "attack_angle_deg"},
+                                       {"Ángulo de ataque (grados)", "attack_angle_deg"},
+                                       {"Angle d’attaque", "attack_angle_deg"},
+                                       {"Utgångsriktning", "azimuth_deg"},
+                                       {"打出角(度)", "launch_angle_deg"},
+                                       {"フェース角(度)", "face_angle_deg"}}) {
+    fs::remove_all(dir / "case");
+    const double value = std::string(column).ends_with("rpm") ? 5600 : 5.6;
+    const auto o = import_text(
+        dir, fmt::format("Club,BallSpeedMph,Club Velocity in mph,{0}\n7i,115,82,{1}\n7i,116,82,{1}\n", header, value));
+    ASSERT_EQ(o.status, 0) << header << o.text;
+    const loop::Shots shots = imported_shots(dir);
+    const loop::Column* c = shots.find(column);
+    ASSERT_TRUE(c) << header << o.text;
+    EXPECT_NEAR(c->native(1), value, 1e-9) << header;
+  }
+}
+
+/// The sign of a spin is held against where the file says that its shots land.
+TEST(Import, ASpinAgainstItsLandingIsTold) {
+  const fs::path dir = test::fresh_directory("import_curve");
+  for (const int sign : {1, -1}) {
+    fs::remove_all(dir / "case");
+    std::string text =
+        "Club,Ball Speed (mph),Club Speed (mph),Launch Angle,Launch Direction,Back Spin,Side Spin,Carry (yd),Carry "
+        "Side (yd)\n";
+    for (int i = 0; i < 10; ++i)  // 300 rpm curve by some 6 yd
+      text += fmt::format("7i,115,82,16,{},6400,{},160,{:.1f}\n", i % 3 - 1, sign * 100 * (i - 4),
+                          160 * std::sin(radians(i % 3 - 1)) + 2 * (i - 4));
+    const auto o = import_text(dir, text);
+    ASSERT_EQ(o.status, 0) << o.text;
+    EXPECT_EQ(o.text.find("--column 'Side Spin=-sidespin_rpm' turns it") != std::string::npos, sign < 0) << o.text;
+  }
+}
+
 }  // namespace
+/// Back and side follow from rate and axis where each row that has the ones has the others too.
+TEST(Import, ComponentsThatNothingElseSaysAreKept) {
+  const fs::path dir = test::fresh_directory("import_components");
+  const std::string head =
+      "Club,Ball Speed (mph),Club Speed (mph),Launch Angle,Spin Rate,Spin Axis,Backspin,Sidespin,Dynamic Loft\n"
+      "7i,115,82,16,6400,0,6400,0,22\n7i,117,83,17,6500,2,6496,227,23\n";
+  const auto kept = [&](const std::string& row) {
+    fs::remove_all(dir / "case");
+    EXPECT_EQ(import_text(dir, head + row).status, 0);
+    const loop::Shots shots = imported_shots(dir);
+    return shots.find("backspin_rpm") && shots.find("sidespin_rpm");
+  };
+  EXPECT_FALSE(kept("7i,116,82,16,6450,-1,6449,-113,22\n"));
+  EXPECT_TRUE(kept("7i,116,82,16,,,6449,-113,22\n"));
+}
+
+/// Where a file has the backspin alone, the clubs' column says so.
+TEST(Import, TheClubsSpinIsNamedAsTheFileHasIt) {
+  const fs::path dir = test::fresh_directory("import_backspin");
+  ASSERT_EQ(import_text(dir,
+                        "Club,Ball Speed (mph),Club Speed (mph),Launch Angle,Launch Direction,Backspin,Dynamic Loft\n"
+                        "7i,115,82,16,1,6400,22\n7i,117,83,17,-1,6500,23\n7i,116,82,16,0,6450,22\n")
+                .status,
+            0);
+  const auto o = command("run '" + (dir / "case").string() + "' --out '" + (dir / "out").string() + "'");
+  ASSERT_EQ(o.status, 0) << o.text;
+  EXPECT_NE(o.text.find("backspin [rpm]  "), std::string::npos) << o.text;
+}
+
 }  // namespace hosel
