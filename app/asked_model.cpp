@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <optional>
 #include <utility>
 
@@ -67,6 +68,7 @@ AskedModel::AskedModel(const std::string& where, const std::string& name, const 
   if (!entry) throw InputError(fmt::format("no model '{}'; `hosel list` shows them", name_));
   blow_ = read_blow(root, {name_});
   const models::Options options = read_options(root, {name_}, blow_);
+  plate_ = options.plate;
   several_ = has_several_sets(root);
   sets_[set_name(root)] = std::make_unique<const Set>(blow_.contact, entry->make(options));
 }
@@ -92,6 +94,18 @@ const AskedModel::Set& AskedModel::set_for(const Blow& blow) const {
   made.contact = read_contact(root, {name_});
   const models::Options options = read_options(root, {name_}, made);
   return *(sets_[called] = std::make_unique<const Set>(made.contact, models::find(name_)->make(options)));
+}
+
+std::string AskedModel::doubt(std::size_t count, std::span<const Input> inputs, std::span<const double> values) const {
+  Blow blow = blow_;
+  std::size_t off = 0, first = 0;
+  std::string sentence;
+  for (std::size_t i = 0; i < count && std::isfinite(blow.club.head.mass); ++i) {
+    for (std::size_t c = 0; c < inputs.size(); ++c) set(blow, inputs[c], values[i * inputs.size() + c]);
+    std::string found = off_the_face(blow, plate_ ? &plate_->design().outline : nullptr);
+    if (!found.empty() && off++ == 0) first = i, sentence = std::move(found);
+  }
+  return off == 0 ? "" : fmt::format("{} of {} blows; the first is blow {}: {}", off, count, first, sentence);
 }
 
 std::vector<models::Answer> AskedModel::launches(std::size_t count, std::span<const Input> inputs,

@@ -11,6 +11,7 @@
 #include "app/reader.hpp"
 #include "golf/blow.hpp"
 #include "golf/quantities.hpp"
+#include "models/fe/plate_face.hpp"
 #include "models/impact_model.hpp"
 
 namespace hosel::app {
@@ -31,6 +32,9 @@ class AskedModel {
   std::vector<models::Answer> launches(std::size_t count, std::span<const Input> inputs,
                                        std::span<const double> values) const;
 
+  /// A sentence where some of these blows strike the ball off the face, with the first of them; empty else.
+  std::string doubt(std::size_t count, std::span<const Input> inputs, std::span<const double> values) const;
+
  private:
   struct Set;
   CaseFile with(const Blow& blow) const;
@@ -40,6 +44,7 @@ class AskedModel {
   std::string name_;
   Blow blow_;             // the case's own
   bool several_ = false;  // the case's ball has several sets of parameters
+  std::shared_ptr<const models::PlateOnDemand> plate_;
   mutable std::mutex mutex_;
   mutable std::map<std::string, std::unique_ptr<const Set>> sets_;  // by name
 };

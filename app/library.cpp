@@ -62,7 +62,8 @@ Seen read_saw(Table root) {
   };
   s.impact_speed =
       interval({"impact_speed", "normal speed of approach, as on a wall: lowest and highest"}, "mps", {0, 200});
-  s.spin_loft = interval({"spin_loft", "between the path and the face's normal: lowest and highest"}, "deg", {0, 1.6});
+  s.spin_loft =
+      interval({"spin_loft", "between the path and the face's normal: lowest and highest"}, "deg", {0, radians(92)});
   s.clubs = t->texts({"clubs", "that were struck"}, std::vector<std::string>{});
   s.faces = t->texts({"faces", "on which the ball was struck: the set is for these"}, std::vector<std::string>{});
   s.not_for = t->texts({"not_for", "sentences: what the entry must not be used for"}, std::vector<std::string>{});
@@ -436,7 +437,7 @@ std::optional<NamedContact> named_contact(Table root) {
     return *std::ranges::find(sets, wanted, &NamedContact::name);
   }
   if (sets.size() == 1) return sets.front();
-  std::string loft = "the loft is not known before the swing";
+  std::string loft = root.has("motion") ? "the loft is not known before the swing" : "each shot has a loft of its own";
   if (root.has("delivery") && root.has("head") && !root.has("motion")) {
     Blow blow;
     blow.delivery = read_delivery_of(root);

@@ -86,13 +86,15 @@ std::string face_tables(const FaceCompliance& f) {
       1e3 * f.mass, f.stiffness, f.damping, 1e3 * f.half_width, 1e3 * f.half_height);
 }
 
-std::string head_tables(const Head& h, std::string_view face, const std::optional<ClubGeometry>& geometry) {
+std::string head_tables(const Head& h, std::string_view face, const std::optional<double>& loft,
+                        const std::optional<ClubGeometry>& geometry) {
   std::vector<std::string> rows;
   for (int k = 0; k < 3; ++k) rows.push_back(toml_list(Vec3(h.inertia.row(k))));
   std::string text =
       fmt::format("\n[head]\nmass_kg = {}\ncg_mm = {}\ninertia_kg_m2 = [{}]\nbulge_mm = {}\nroll_mm = {}\nface = {}\n",
                   h.mass, toml_list(Vec3(1e3 * h.cg)), fmt::join(rows, ", "), 1e3 * h.face.bulge, 1e3 * h.face.roll,
                   toml_text(std::string(face)));
+  if (loft) text += fmt::format("loft_deg = {}\n", degrees(*loft));
   if (geometry) {
     const Vec3& a = geometry->shaft_axis;
     text += fmt::format("\n[hosel]\nposition_mm = {}\nlie_deg = {}\nlean_deg = {}\n",

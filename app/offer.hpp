@@ -30,8 +30,9 @@ std::string toml_text(const std::string& text);
 /// Tables of an entry, as the reader takes them. Throws std::invalid_argument for a layer whose law is no polynomial.
 std::string ball_tables(const Ball& body, const models::FeBall& layers);
 std::string face_tables(const FaceCompliance& face);
-/// `face` is a name of the library, or `kRigidFace`.
-std::string head_tables(const Head& head, std::string_view face, const std::optional<ClubGeometry>& geometry);
+/// `face` is a name of the library, or `kRigidFace`; `loft` of the face at its centre, where it is known [rad].
+std::string head_tables(const Head& head, std::string_view face, const std::optional<double>& loft,
+                        const std::optional<ClubGeometry>& geometry);
 /// The parts that are there.
 std::string contact_tables(const NamedContact& contact);
 

@@ -202,19 +202,23 @@ void check_shaft(const Table& root, const Blow& blow, const std::vector<std::str
       root.fail("models", fmt::format("{} needs the club's shaft: [shaft] with a `name`, or a table of its own", m));
 }
 
-std::string off_the_face(const Blow& blow) {
+std::string off_the_face(const Blow& blow, const mesh::PlateOutline* outline) {
   const double toe = blow.delivery.impact_toe, high = blow.delivery.impact_high;
   const std::optional<FaceCompliance>& face = blow.club.head.compliance;
   const bool bounded = face && std::isfinite(face->half_width) && std::isfinite(face->half_height);
   const double width = bounded ? face->half_width : 0.0635, height = bounded ? face->half_height : 0.0355;
-  const bool on = bounded ? std::hypot(toe / width, high / height) < 1
-                          : std::abs(toe) <= width && std::abs(high) <= height;
+  const Eigen::Vector2d place(-toe, high);
+  const bool on = outline   ? outline->share(place) < 1
+                  : bounded ? place.dot(face->ellipse() * place) < 1
+                            : std::abs(toe) <= width && std::abs(high) <= height;
   if (on) return {};
-  return fmt::format(
-      "the ball is struck off the face: {:g} mm towards the {} and {:g} mm {}, where {} reaches {:g} mm "
-      "to either side and {:g} mm up and down",
-      1e3 * std::abs(toe), toe < 0 ? "heel" : "toe", 1e3 * std::abs(high), high < 0 ? "down" : "up",
-      bounded ? "the ellipse on which this face deflects" : "no face by the rules", 1e3 * width, 1e3 * height);
+  const std::string where = fmt::format("the ball is struck off the face: {:g} mm towards the {} and {:g} mm {}",
+                                        1e3 * std::abs(toe), toe < 0 ? "heel" : "toe", 1e3 * std::abs(high),
+                                        high < 0 ? "down" : "up");
+  if (outline) return where + ", beside the outline of [face.plate]";
+  return fmt::format("{}, where {} reaches {:g} mm to either side and {:g} mm up and down", where,
+                     bounded ? "the ellipse on which this face deflects" : "no face by the rules", 1e3 * width,
+                     1e3 * height);
 }
 
 }  // namespace hosel::app

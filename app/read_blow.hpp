@@ -8,6 +8,7 @@
 #include "app/reader.hpp"
 #include "golf/blow.hpp"
 #include "golf/quantities.hpp"
+#include "mesh/plate.hpp"
 
 namespace hosel::app {
 
@@ -57,7 +58,8 @@ Blow read_blow(Table root, const std::vector<std::string>& models);
 /// Refuses a model of the whole club where the case has no shaft.
 void check_shaft(const Table& root, const Blow& blow, const std::vector<std::string>& models);
 /// A sentence where the ball is struck off the face; empty where it is struck on it: within the ellipse on which a
-/// compliant face deflects, or within what the widest heads of the rules of golf have (127 mm heel to toe, 71 mm high).
-std::string off_the_face(const Blow& blow);
+/// compliant face deflects, within the outline of a face with a thickness, or else within what the widest heads of the
+/// rules of golf have (127 mm heel to toe, 71 mm high).
+std::string off_the_face(const Blow& blow, const mesh::PlateOutline* outline = nullptr);
 
 }  // namespace hosel::app

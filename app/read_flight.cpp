@@ -67,6 +67,14 @@ models::FlightLaw read_law(Table& table) {
   return law;
 }
 
+/// With what the case multiplies it by: a law beside it is as published.
+std::string drawn_name(const models::FlightLaw& law) {
+  std::string factors;
+  for (const auto& [what, scale] : {std::pair{"drag", law.drag_scale}, {"lift", law.lift_scale}})
+    if (scale != 1) factors += fmt::format("{}{} x {:g}", factors.empty() ? "" : "; ", what, scale);
+  return factors.empty() ? law.name : fmt::format("{} ({})", law.name, factors);
+}
+
 }  // namespace
 
 models::Air read_air(Table table) {
@@ -139,8 +147,10 @@ FlightSetup read_flight(Table table) {
   s.unit = table.one_of<Unit>({"units", "of distances in tables and figures"},
                               {{"yards", Unit::yards}, {"metres", Unit::metres}}, "yards");
   s.conditions = read_conditions(table);
-  for (const std::string& name :
-       table.texts({"beside", "further laws drawn and tabled beside the first"}, std::vector<std::string>{}))
+  for (const std::string& name : table.texts({"beside",
+                                              "further laws drawn and tabled beside the first, as published: the "
+                                              "factors and the decay of [flight] are not theirs"},
+                                             std::vector<std::string>{}))
     s.others.push_back(published(table, "beside", name));
   s.options.tolerance =
       table.number({"tolerance", "relative tolerance of the trajectory"}, {1e-12, 1e-3}, s.options.tolerance);
@@ -219,7 +229,7 @@ post::ShotFlight FlightSetup::follow(const Launch& launch, const Ball& ball, dou
       models::fly(launch, ball, conditions, {.tolerance = options.tolerance, .sample = sample}), {}, unit};
   if (turf) try {
       s.run = models::run_out(s.flight.landing, ball, conditions.ground, *turf);
-    } catch (const std::domain_error&) {}  // there is a carry and no total
+    } catch (const std::logic_error& e) { s.no_run = fmt::format("the carry has no total: {}", e.what()); }
   return s;
 }
 
@@ -234,7 +244,7 @@ std::optional<ShotChannel> find_shot_channel(std::string_view name, const std::o
       return ShotChannel{std::string(name), std::string(c.unit), c.si,
                          [setup = *flight, ball, value = c.value](const Launch& l) {
                            if (const auto x = value(setup.follow(l, ball))) return *x;
-                           throw std::invalid_argument("the ball lands and does not roll on");
+                           throw std::invalid_argument(setup.follow(l, ball).no_run);
                          }};
   return {};
 }
@@ -277,13 +287,15 @@ nlohmann::json report_flight(Output& out, const FlightSetup& setup, const std::s
   }
   const models::FlightBudget budget =
       models::flight_budget(launch, ball, setup.conditions, setup.options, setup.errors, setup.others);
+  flights.front().title = drawn_name(setup.conditions.law);
   const std::string how =
-      fmt::format("{}, {} in air of {:.4f} kg/m³", name, setup.conditions.law.name, setup.conditions.air.density);
+      fmt::format("{}, {} in air of {:.4f} kg/m³", name, flights.front().title, setup.conditions.air.density);
   out.tell(fmt::format("\n{}:", how));  // the page has it as the table's heading
   out.show(post::budget_table(budget, setup.errors, setup.unit), "The flight: " + how);
   const models::Flight& flight = flights.front().shot.flight;
   if (const std::string text = outside_law(setup, flights.front().shot); !text.empty())
     out.warn(fmt::format("{}: {}", name, text));
+  if (const std::string& text = flights.front().shot.no_run; !text.empty()) out.warn(fmt::format("{}: {}", name, text));
   const std::string file = out.file_name(name);
   if (draw) out.draw(post::trajectory_figure(name, flights), "figures/flight-" + file);
   post::VtkSeries(out.directory() / "vtk", "flight-" + file, post::VtkSeries::Form::surface)

@@ -122,7 +122,14 @@ models::FeImpactOptions read_fe(Table root, const Ball& body, bool asked, PatchF
       Range::fraction(), o.rho_inf);
   read_steps(time, o);
   const std::vector<std::string> faults = o.faults();
-  if (!faults.empty()) root.fail(root.has("mesh") ? "mesh" : "", faults.front());
+  if (!faults.empty()) {
+    // "mesh: far must be ...": at its key, where the case has it.
+    std::string_view fault = faults.front();
+    if (!root.has("mesh") || !fault.starts_with("mesh: ")) root.fail(root.has("mesh") ? "mesh" : "", faults.front());
+    fault.remove_prefix(6);
+    const std::string key(fault.substr(0, fault.find(' ')));
+    mesh.fail(mesh.has(key) ? key : "", std::string(fault));
+  }
   if (const auto wrong = friction.faults(); !wrong.empty()) root.fail("contact", wrong.front());
   check_memory(root, o);
   return o;
@@ -280,7 +287,13 @@ models::Options read_options(Table root, const std::vector<std::string>& models,
           t->flag({"feels_rotation", "the head's rotation bends and twists the shaft"}, true);
     }
   if (asked("fe-full-club") || asked("shaft-coupled"))
-    if (auto t = table("grip", true)) read_grip(*t, options.shaft_mount, root.has("motion"));
+    if (auto t = table("grip", true)) {
+      read_grip(*t, options.shaft_mount, root.has("motion"));
+      if (!asked("fe-full-club") && options.shaft_mount.grip != models::Grip::clamped)
+        t->fail("hold",
+                "shaft-coupled condenses a shaft whose butt goes on as before the blow: \"clamped\"; for the "
+                "others use fe-full-club");
+    }
   if (asked("fe-full-club") || asked("shaft-coupled"))
     if (auto t = root.optional_table("joint")) {
       const models::HeadJoint joint = options.shaft_mount.joint = read_head_joint(*t);

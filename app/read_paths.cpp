@@ -58,8 +58,9 @@ models::ShotUnknowns read_own(Table t) {
   sd[models::kOwnDrag] = t.number({"drag", "share by which a ball's drag differs from the law's"}, {0, 1}, 0.03);
   sd[models::kOwnLift] = t.number({"lift", "share by which a ball's lift differs from the law's"}, {0, 1}, 0.03);
   sd[models::kOwnSpeed] = t.quantity({"ball_speed", "error of the recorded ball speed"}, "mps", {0, 10}, 0.3);
-  sd[models::kOwnAngle] = t.quantity({"launch_angle", "error of the recorded launch angle"}, "deg", {0, 0.2}, 0.003);
-  sd[models::kOwnAzimuth] = t.quantity({"azimuth", "error of the recorded direction"}, "deg", {0, 0.2}, 0.003);
+  sd[models::kOwnAngle] =
+      t.quantity({"launch_angle", "error of the recorded launch angle"}, "deg", {0, radians(12)}, 0.003);
+  sd[models::kOwnAzimuth] = t.quantity({"azimuth", "error of the recorded direction"}, "deg", {0, radians(12)}, 0.003);
   sd[models::kGustAlong] = sd[models::kGustRight] =
       t.quantity({"gust", "by which the wind of a shot differs from its group's, each direction"}, "mps", {0, 20}, 1.2);
   return sd;
@@ -96,7 +97,8 @@ RadarPaths read_paths(Table table, const Ball& ball) {
   const double sample = table.quantity({"sample", "interval of the positions"}, "s", {0.05, 5}, 0.5);
   const double least_time = table.quantity({"least_time", "a shot must have been followed so long"}, "s", {0, 20}, 3.0),
                least_carry = table.quantity({"least_carry", "and carry so far"}, "m", Range::non_negative(), 180.0),
-               least_angle = table.quantity({"least_launch_angle", "and start so high"}, "deg", {-0.5, 1}, radians(4));
+               least_angle = table.quantity({"least_launch_angle", "and start so high"}, "deg",
+                                            {-radians(30), radians(60)}, radians(4));
   const double tracked =
                    table.number({"tracked_spin_error", "relative error of a spin that was tracked"}, {0, 1}, 0.01),
                estimated = table.number({"estimated_spin_error", "relative error of one that the radar estimated"},

@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <stdexcept>
 
 #include "app/read_sheet.hpp"
 #include "golf/units.hpp"
@@ -43,15 +45,25 @@ struct Meaning {
   double si;
 };
 
-/// What a column's name says; nothing where it is no channel.
+/// Units of strain, in m/m.
+constexpr std::array<std::pair<std::string_view, double>, 4> kStrains = {
+    {{"_um_per_m", 1e-6}, {"_ustrain", 1e-6}, {"_mm_per_m", 1e-3}, {"_pct", 1e-2}}};
+
+/// What a column's name says; nothing where it is no channel. Throws std::invalid_argument where a strain has a unit
+/// that is not known.
 std::optional<Meaning> meaning(const std::string& name) {
   using loop::Reading;
-  if (name.starts_with("strain")) {
-    const bool millionths = name.ends_with("_um_per_m") || name.ends_with("_ustrain");
-    const bool droop = name.find("droop") != std::string::npos;
-    return Meaning{droop ? Reading::strain_droop : Reading::strain_lead, 0, millionths ? 1e-6 : 1.0};
-  }
   const SplitName split = split_unit(name);
+  if (name.starts_with("strain")) {
+    const auto unit = std::ranges::find_if(kStrains, [&](const auto& u) { return name.ends_with(u.first); });
+    if (unit == kStrains.end() && name != "strain" && name != "strain_lead" && name != "strain_droop")
+      throw std::invalid_argument(
+          fmt::format("column '{}' ends with no unit of strain: _um_per_m, _ustrain, _mm_per_m or _pct; `strain`, "
+                      "`strain_lead` and `strain_droop` alone are in m/m",
+                      name));
+    const bool droop = name.find("droop") != std::string::npos;
+    return Meaning{droop ? Reading::strain_droop : Reading::strain_lead, 0, unit == kStrains.end() ? 1 : unit->second};
+  }
   if (!split.unit) return {};
   const auto is = [&](std::string_view stem) {
     return split.stem == stem || split.stem.starts_with(std::string(stem) + "_");
@@ -101,7 +113,10 @@ Series read_series(const std::filesystem::path& file, Table* sensors, double tip
     if (driven("clamp", Dimension::acceleration, out.drive.acceleration) ||
         driven("force", Dimension::force, out.drive.force))
       continue;
-    const std::optional<Meaning> m = meaning(name);
+    std::optional<Meaning> m;
+    try {
+      m = meaning(name);
+    } catch (const std::invalid_argument& e) { throw InputError(fmt::format("{}:1: {}", sheet.file, e.what())); }
     if (!m) {
       notes.push_back(
           fmt::format("{}: column '{}' is no channel that the model knows, and is not used", out.record.name, name));

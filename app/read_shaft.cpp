@@ -225,7 +225,7 @@ HoselPlace read_hosel(Table table, const std::optional<HoselPlace>& standard) {
   // The shaft's direction from tip to butt: lie in the plane of the face's Yc and Zc, lean about Yc.
   at.lie = table.quantity({"lie", "angle of the shaft above the ground, in the plane of the face's Yc and Zc"}, "deg",
                           {0, kPi / 2}, standard_of(standard, &HoselPlace::lie));
-  at.lean = table.quantity({"lean", "tilt of the shaft towards the target"}, "deg", {-1.2, 1.2},
+  at.lean = table.quantity({"lean", "tilt of the shaft towards the target"}, "deg", {-radians(70), radians(70)},
                            standard_of(standard, &HoselPlace::lean));
   return at;
 }

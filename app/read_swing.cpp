@@ -114,7 +114,10 @@ GripInput read_grip_drive(Table root) {
       {"drive", "what moves the grip: the recorded motion, the same through springs, or recorded forces"},
       {{"prescribed", Kind::prescribed}, {"hands", Kind::hands}, {"forced", Kind::forced}}, "prescribed");
   if (in.kind == Kind::hands) in.hands = read_springs(*t, "hands'");
-  if (in.kind == Kind::forced) in.wrench = t->data_file({"wrench", "CSV of the recorded force and moment at the grip"});
+  if (in.kind == Kind::forced)
+    in.wrench = t->data_file({"wrench",
+                              "CSV of the recorded force and moment on the shaft, at the point that `lower_hand` says, "
+                              "along the grip's axes turned by `turn_about_shaft`: as swing.csv has them"});
   return in;
 }
 

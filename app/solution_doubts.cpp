@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace hosel::app {
@@ -26,6 +27,16 @@ std::vector<SolutionDoubt> solution_doubts(const Blow& blow, const models::FeOut
 double relative_energy(const Blow& blow, const models::FeOutcome& outcome) {
   const double head = blow.club.head.mass, ball = blow.ball.mass;
   return 0.5 * (std::isfinite(head) ? head * ball / (head + ball) : ball) * outcome.frame.approach.squaredNorm();
+}
+
+void note_doubt(std::vector<WorstDoubt>& worst, const std::string& kind, std::size_t blow, double size,
+                const std::string& sentence) {
+  auto at = std::ranges::find(worst, kind, &WorstDoubt::kind);
+  if (at == worst.end()) at = worst.insert(at, {.kind = kind});
+  if (at->count++ > 0 && std::abs(size) <= at->size) return;
+  at->blow = blow;
+  at->size = std::abs(size);
+  at->sentence = sentence;
 }
 
 }  // namespace hosel::app

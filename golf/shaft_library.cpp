@@ -66,13 +66,12 @@ Shaft resampled(const std::vector<Station>& given, const Section& section) {
 }
 
 Shaft composite_driver() {
-  // Source of EI, mass and GJ/EI: published range of composite driver shafts (reference values of the
-  // project, "Shafts"); the radii are those of common blanks.
+  // EI, mass and GJ/EI within the published range of composite driver shafts; the radii are those of common blanks.
   return composite_shaft({{0, 70, 0.35 * 70, 0.060 / 1.1, 0.0072}, {1.1, 20, 0.35 * 20, 0.060 / 1.1, 0.0042}});
 }
 
 Shaft steel_iron7() {
-  // Outer radius and wall as published for a 7-iron shaft of 104 g; E 190 GPa, nu 0.29, density of steel.
+  // Outer radius and wall as published for a 7-iron shaft of 104 g, which they make 125 g of steel; E 190 GPa, nu 0.29.
   constexpr double E = 190e9, G = E / (2 * 1.29);
   return tube_shaft(
       {{0, 7.6e-3, 0.348e-3}, {0.273, 7.24e-3, 0.381e-3}, {0.609, 5.08e-3, 0.549e-3}, {0.965, 4.7e-3, 0.549e-3}},
@@ -82,7 +81,7 @@ Shaft steel_iron7() {
 constexpr std::array kLibrary = {
     NamedShaft{"composite-driver", "composite, 60 g, 1.10 m, EI 70 (butt) to 20 N m^2 (tip), GJ 0.35 EI",
                composite_driver},
-    NamedShaft{"steel-7-iron", "steel, 0.965 m, published radii and walls, EI 85 to 28 N m^2", steel_iron7},
+    NamedShaft{"steel-7-iron", "steel, 125 g, 0.965 m, published radii and walls, EI 85 to 28 N m^2", steel_iron7},
 };
 
 /// Moduli of stretch go with those of bending, of shear with those of torsion.

@@ -1,12 +1,12 @@
-/// Finds the unknown loft of a blow from its measured launch angle.
+/// Finds the unknown loft of a blow from its measured launch angle. A launch monitor's dynamic loft may be computed
+/// from the ball; the launch angle is seen. Spin and speed are then compared at the same launch angle, with the loft an
+/// unknown of each shot.
 #pragma once
 
 #include "models/impact_model.hpp"
 
 namespace hosel::models {
 
-/// A launch monitor's dynamic loft may be computed from the ball; the launch angle is seen. Spin and speed are then
-/// compared at the same launch angle, with the loft an unknown of each shot.
 /// Launch angle gained by dynamic loft, of a gripping ball to begin with: launch ratios are 0.6 to 0.85.
 inline constexpr double kLaunchPerLoft = 0.7;
 

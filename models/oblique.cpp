@@ -24,6 +24,16 @@ std::optional<double> launch_ratio(const Blow& blow, const Launch& launch) {
   return (launch.launch_angle() - path) / (face - path);
 }
 
+WallBounce off_wall(const Blow& blow, const Launch& launch) {
+  const Vec3 n = first_contact(blow).normal, before = -blow.delivery.velocity(), after = launch.velocity + before;
+  WallBounce w{.into = -before.dot(n), .out = after.dot(n)};
+  const Vec3 across = before + w.into * n;
+  w.along = across.norm();
+  if (w.along > 0) w.direction = across / w.along;
+  w.along_after = after.dot(w.direction);
+  return w;
+}
+
 Bounce bounce(const ImpactModel& model, const Ball& ball, double speed, double angle, const ContactLaw& contact) {
   Blow blow;
   blow.ball = ball;
@@ -32,18 +42,13 @@ Bounce bounce(const ImpactModel& model, const Ball& ball, double speed, double a
   blow.delivery.club_speed = speed;  // the plate moves, the ball rests: the same thing
   blow.delivery.club_path = angle;
   const Launch launch = checked_launch(model, blow);
-  const Vec3 n = first_contact(blow).normal, before = -blow.delivery.velocity();
-  const Vec3 after = launch.velocity + before;
-  const double v_n = -before.dot(n);
-  const Vec3 across = before + v_n * n;
-  const double v_t = across.norm();
-  const Vec3 along = across / v_t;
+  const WallBounce w = off_wall(blow, launch);
   Bounce b{.speed = speed, .angle = angle};
-  b.normal_restitution = after.dot(n) / v_n;
-  b.tangential_ratio = after.dot(along) / v_t;
-  b.spin = launch.spin.dot(n.cross(along));
-  b.tangential_restitution = b.spin * ball.radius / v_t - b.tangential_ratio;
-  b.rebound_angle = std::atan2(after.dot(along), after.dot(n));
+  b.normal_restitution = w.restitution();
+  b.tangential_ratio = w.along_after / w.along;
+  b.spin = launch.spin.dot(first_contact(blow).normal.cross(w.direction));
+  b.tangential_restitution = b.spin * ball.radius / w.along - b.tangential_ratio;
+  b.rebound_angle = w.rebound_angle();
   return b;
 }
 

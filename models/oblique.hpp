@@ -1,6 +1,7 @@
 /// Quantities of an oblique blow: tangential restitution, launch ratio, and the bounce off a plate.
 #pragma once
 
+#include <cmath>
 #include <optional>
 
 #include "models/impact_model.hpp"
@@ -16,6 +17,17 @@ std::optional<double> tangential_restitution(const Blow& blow, const Launch& lau
 /// the face's normal at the point of impact - attack angle). 1 along the normal, 0 along the path. None where the two
 /// coincide. E. Henrikson et al., Proceedings 49 (2020) 27.
 std::optional<double> launch_ratio(const Blow& blow, const Launch& launch);
+
+/// A blow by a wall as a bounce off it: the ball's centre in the wall's frame.
+struct WallBounce {
+  double into = 0, along = 0;       ///< before: towards the wall and along it [m/s]
+  double out = 0, along_after = 0;  ///< after: away from the wall; along it, in the direction of before [m/s]
+  Vec3 direction = Vec3::Zero();    ///< along the wall before; zero where the ball came straight
+  double restitution() const { return out / into; }
+  /// From the normal; beyond pi/2 where the ball does not leave the wall [rad].
+  double rebound_angle() const { return std::atan2(along_after, out); }
+};
+WallBounce off_wall(const Blow& blow, const Launch& launch);
 
 /// A ball thrown at a rigid, flat plate; the plate's frame, tangential figures along the incoming slip.
 struct Bounce {

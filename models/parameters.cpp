@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 
+#include "models/sliding_friction.hpp"
+
 namespace hosel::models {
 namespace {
 
@@ -69,7 +71,8 @@ constexpr std::array kParameters = {
     NamedParameter{"common_friction", "", 0.01, 2.0, [](const Options&, const Blow& b) { return b.contact.friction; },
                    [](Options& o, Blow& b, double x) {
                      slide(o.volumetric, x);
-                     b.contact.friction = o.hertz_maw.friction = b.contact.patch.coefficient = x;
+                     models::slide(b.contact.patch, x);
+                     b.contact.friction = o.hertz_maw.friction = x;
                    }},
     PLAIN("hertz_modulus", "MPa", 1e6, 1e9, o.hertz_maw.modulus),
     PLAIN("hertz_poisson", "", 0.0, 0.5, o.hertz_maw.poisson),

@@ -78,13 +78,14 @@ VtkMesh shaft_mesh(const fem::Beam& beam, const Shaft& shaft, const fem::State& 
   const fem::Node& grip = beam.nodes().front();
   const Vec3 held = state.q.segment<3>(grip.translation.q), start = beam.line().front().position;
   const Eigen::Quaterniond turn = fem::rotation(state, grip.rotation);
+  const double inside = shaft.length() - beam.line().back().arc_length;  // the line begins below the hands, or a clamp
   for (std::size_t i = 0; i < beam.nodes().size(); ++i) {
     const fem::DofMap::Block& block = beam.nodes()[i].translation;
     m.points.push_back(beam.line()[i].position);
     displacement.push_back(Vec3(state.q.segment<3>(block.q)) - m.points.back());
     velocity.emplace_back(state.v.segment<3>(block.v));
     deflection.push_back(Vec3(state.q.segment<3>(block.q)) - held - turn * (m.points.back() - start));
-    radius.values.push_back(shaft.at(beam.line()[i].arc_length).outer_radius);
+    radius.values.push_back(shaft.at(inside + beam.line()[i].arc_length).outer_radius);
     if (i > 0) m.cells.push_back({CellShape::line, {std::int64_t(i) - 1, std::int64_t(i)}});
   }
   VtkField axial{"axial_force", "N", 1, {}}, torque{"torque", "N m", 1, {}}, bending{"bending_moment", "N m", 1, {}};

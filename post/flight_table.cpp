@@ -70,7 +70,7 @@ TextTable budget_table(const models::FlightBudget& b, const std::vector<models::
   for (int a = 0; a < models::kFlightAnswers; ++a) {
     const FlightChannel& r = rows[std::size_t(a)];
     auto& row = table.rows.emplace_back();
-    row = {fmt::format("{} [{}]", r.name, r.unit), fmt::format("{:.2f}", b.value[a] / r.si),
+    row = {fmt::format("{} [{}]", spoken(r.name), r.unit), fmt::format("{:.2f}", b.value[a] / r.si),
            fmt::format("+- {:.0e}", b.numerical[a] / r.si)};
     for (const models::FlightAnswers& sd : b.launch) row.push_back(fmt::format("+- {:.2f}", sd[a] / r.si));
     if (errors.size() > 1) row.push_back(fmt::format("+- {:.2f}", b.launch_total[a] / r.si));

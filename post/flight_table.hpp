@@ -25,6 +25,7 @@ struct ShotFlight {
   models::Flight flight;
   std::optional<models::Run> run;           ///< absent: the ball is not followed on the ground
   DistanceUnit unit = DistanceUnit::yards;  ///< in which it is shown
+  std::string no_run = {};                  ///< why the ball's run on the turf has no end, where it was asked for
 };
 
 struct FlightChannel {

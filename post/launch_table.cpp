@@ -9,6 +9,7 @@
 
 #include "golf/units.hpp"
 #include "post/digits.hpp"
+#include "post/labels.hpp"
 
 namespace hosel::post {
 namespace {
@@ -87,7 +88,7 @@ TextTable launch_table(const std::vector<LaunchColumn>& columns, const Measured&
     const Channel* const measured_as = find_channel(channel.name);
     if (channel.unit == "mps" && units == Units::golf) channel.unit = "mph", channel.si = kMpsPerMph;
     auto& row = table.rows.emplace_back();
-    row.push_back(fmt::format("{} [{}]", channel.name, channel.unit == "mps" ? "m/s" : channel.unit));
+    row.push_back(fmt::format("{} [{}]", spoken(channel.name), channel.unit == "mps" ? "m/s" : channel.unit));
     for (const LaunchColumn& c : columns) {
       double shown = (c.launch.*channel.value)() / channel.si;
       const double error =
@@ -116,8 +117,9 @@ TextTable launch_table(const std::vector<LaunchColumn>& columns, const Measured&
   const auto flown = std::ranges::find_if(columns, [](const LaunchColumn& c) { return c.flight.has_value(); });
   if (flown == columns.end()) return table;
   for (const FlightChannel& channel : flight_channels(flown->flight->unit)) {
-    if (!channel.value(*flown->flight)) continue;
-    auto& row = table.rows.emplace_back(1, fmt::format("{} [{}]", channel.name, channel.unit));
+    if (std::ranges::none_of(columns, [&](const LaunchColumn& c) { return c.flight && channel.value(*c.flight); }))
+      continue;
+    auto& row = table.rows.emplace_back(1, fmt::format("{} [{}]", spoken(channel.name), channel.unit));
     for (const LaunchColumn& c : columns) {
       const auto x = c.flight ? channel.value(*c.flight) : std::nullopt;
       row.push_back(x ? fixed(*x / channel.si, channel.decimals) : "-");

@@ -20,7 +20,7 @@ enum class Units { metric, golf };
 
 /// One launch quantity in the unit in which it is shown.
 struct Channel {
-  std::string_view name;  ///< as in the data specification, without unit
+  std::string_view name;  ///< as in files, without unit
   std::string_view unit;  ///< suffix
   double si;              ///< one of the unit in SI
   double (Launch::*value)() const;

@@ -142,6 +142,8 @@ bool MovingBlow::whole() const {
 std::string json_for_viewer(const MovingBlow& blow) {
   using nlohmann::json;
   if (blow.frames.empty()) return {};
+  for (const MovingBlow::Body& body : blow.bodies)
+    if (std::ranges::any_of(body.cells, [](int point) { return point > 65535; })) return {};
   constexpr std::size_t kMost = 4'000'000;  // characters
   std::size_t words = 0;                    // of a frame
   for (const MovingBlow::Instant& i : blow.frames.front().bodies)

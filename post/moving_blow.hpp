@@ -52,7 +52,8 @@ struct MovingBlow {
 };
 
 /// JSON for post/viewer/viewer.mjs that may stand in an HTML page as it is: places and stresses rounded to 16 bits over
-/// their ranges, in base64. At most 4 MB: of more, every second frame is left out. Empty where there is no frame.
+/// their ranges, in base64. At most 4 MB: of more, every second frame is left out. Empty where there is no frame, or
+/// where the cells of a body count more points than 16 bits do.
 std::string json_for_viewer(const MovingBlow& blow);
 
 }  // namespace hosel::post

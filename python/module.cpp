@@ -78,6 +78,9 @@ class Model {
           throw app::InputError(
               fmt::format("blow {}: {}: {:g} is {}", i, names[c], x, range.sentence(split_unit(names[c]).unit)));
       }
+    if (const std::string doubt = model_.doubt(std::size_t(in.shape(0)), asked, values);
+        !doubt.empty() && PyErr_WarnEx(PyExc_UserWarning, doubt.c_str(), 2) != 0)
+      throw py::error_already_set();
     std::vector<models::Answer> launches;
     {
       const py::gil_scoped_release released;

@@ -216,11 +216,13 @@ class CalibrateBallJob final : public Job {
     Use use{{std::ranges::min(wall.speeds), std::ranges::max(wall.speeds)}, {0, 0}};
     bool oblique = problem_.bounce.has_value();
     if (oblique) use.spin_loft.high = problem_.bounce->angle;
-    for (const models::ObliqueTarget& shot : problem_.shots) {
-      if (!shot.seen) continue;
+    for (const models::ObliquePoint& found : fit.shots) {
+      if (!found.seen) continue;
       oblique = true;
-      use = both(use, use_of(shot.blow));
-      o.seen.clubs.push_back(shot.name);
+      Blow blow = target_of(found).blow;
+      blow.delivery.dynamic_loft = found.loft;  // the target's is where the search began
+      use = both(use, use_of(blow));
+      o.seen.clubs.push_back(found.name);
     }
     o.seen.impact_speed = use.impact_speed;
     if (oblique) o.seen.spin_loft = use.spin_loft;
@@ -259,7 +261,7 @@ class CalibrateBallJob final : public Job {
     if (auto t = target.optional_table("bounce"))
       problem_.bounce = {
           .speed = t->quantity({"speed", "at which the ball is thrown at a rigid plate"}, "mps", {1, 100}),
-          .angle = t->quantity({"angle", "from the plate's normal"}, "deg", {0.01, 1.5}),
+          .angle = t->quantity({"angle", "from the plate's normal"}, "deg", {radians(0.5), radians(86)}),
           .tangential_restitution = t->number({"tangential_restitution", "wanted"}, {-1, 1}),
           .sigma = t->number({"sigma", "standard error of the tangential restitution wanted"}, {1e-4, 1})};
   }
@@ -296,8 +298,8 @@ class CalibrateBallJob final : public Job {
       auto own_shaft = t.optional_table("shaft");
       shot.blow.club.shaft = own_shaft ? std::optional(read_shaft(*own_shaft)) : shaft;
       shot.blow.club.geometry = own_head || t.has("hosel") ? read_club_geometry(t, false) : geometry;
-      shot.launch_angle =
-          t.quantity({"launch_angle", "measured: the loft is an unknown that meets it"}, "deg", {-1.5, 1.5});
+      shot.launch_angle = t.quantity({"launch_angle", "measured: the loft is an unknown that meets it"}, "deg",
+                                     {-radians(86), radians(86)});
       shot.spin_rate = t.quantity({"spin_rate", "measured"}, "rpm", Range::positive());
       shot.spin_sigma = t.number({"spin_sigma", "standard error of the spin, relative"}, {1e-4, 1});
       if (t.has_quantity("ball_speed")) {

@@ -172,7 +172,8 @@ class CalibrateReducedJob final : public Job {
 
   /// As a ball's entry of the library has it.
   static std::string entry(const Set& set, const models::ReducedCalibration& fit) {
-    const auto [low, high] = std::ranges::minmax(set.lofts);
+    Use use = use_of(set.blows.front());
+    for (const Blow& b : set.blows) use = both(use, use_of(b));
     const models::VolumetricLaw& v = fit.volume;
     std::string faces;
     for (const std::string& f : set.faces) faces += fmt::format("{}{}", faces.empty() ? "" : ", ", toml_text(f));
@@ -184,11 +185,11 @@ class CalibrateReducedJob final : public Job {
         "joint_stiffness_N_m_per_rad = {:.6g}\njoint_damping_N_m_s_per_rad = {:.6g}\ncover_thickness_mm = {:.6g}\n"
         "volume_exponent = {:.6g}\n[reduced.hertz_maw]\nmodulus_MPa = {:.6g}\npoisson = {:.6g}\nfriction = {:.6g}\n"
         "damping_s_per_m = {:.6g}\n",
-        toml_text(set.name), degrees(low), degrees(high), faces.empty() ? "" : fmt::format("faces = [{}]\n", faces),
-        fit.law.friction, fit.law.restitution, fit.law.restitution_slope, fit.law.tangential_restitution,
-        fit.law.friction, v.stiffness, v.damping, v.friction, v.transition_speed, v.joint_stiffness, v.joint_damping,
-        1e3 * v.cover_thickness, v.volume_exponent, 1e-6 * fit.hertz.modulus, fit.hertz.poisson, fit.hertz.friction,
-        fit.hertz.damping);
+        toml_text(set.name), degrees(use.spin_loft.low), degrees(use.spin_loft.high),
+        faces.empty() ? "" : fmt::format("faces = [{}]\n", faces), fit.law.friction, fit.law.restitution,
+        fit.law.restitution_slope, fit.law.tangential_restitution, fit.law.friction, v.stiffness, v.damping, v.friction,
+        v.transition_speed, v.joint_stiffness, v.joint_damping, 1e3 * v.cover_thickness, v.volume_exponent,
+        1e-6 * fit.hertz.modulus, fit.hertz.poisson, fit.hertz.friction, fit.hertz.damping);
   }
 
   std::vector<Set> sets_;

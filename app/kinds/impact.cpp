@@ -80,10 +80,14 @@ class ImpactJob final : public Job {
     if (!missing_.empty()) return out.skip(missing_);
     const bool fe = std::ranges::any_of(own_.models, [](const Entry& e) { return e.fe() != nullptr; });
     if (fe && !own_.yields() && models::wants_yielding_face(own_.blow.club.head)) out.say(rigid_face_costs());
-    if (const std::string sentence = off_the_face(own_.blow); !sentence.empty()) out.warn(sentence);
+    const std::string off = off_the_face(own_.blow, own_.outline());
+    if (!off.empty()) out.warn(off);
     if (own_.flight) own_.flight->show_in(out);
-    for (Side& side : compared_)
+    for (Side& side : compared_) {
       if (side.flight) side.flight->show_in(out);
+      if (const std::string text = off_the_face(side.blow, side.outline()); !text.empty() && text != off)
+        out.warn(fmt::format("{}: {}", side.name, text));
+    }
     for (Side& side : compared_) choose_sets(side);
     choose_sets(own_);
     nlohmann::json summary;
@@ -119,10 +123,11 @@ class ImpactJob final : public Job {
       doubt_use(out, own_, entry, blow);
     }
     for (std::size_t c = compared; own_.flight && c < columns.size(); ++c) {
-      columns[c].flight = landed(*own_.flight, columns[c].launch, own_.blow.ball);
-      if (!columns[c].flight)
-        out.warn(fmt::format("{}: the ball does not rise to the ground of [flight]", columns[c].title));
-      if (columns[c].coarser) columns[c].coarser_flight = landed(*own_.flight, *columns[c].coarser, own_.blow.ball);
+      std::string why, coarser;
+      columns[c].flight = landed(*own_.flight, columns[c].launch, own_.blow.ball, why);
+      if (!columns[c].flight) out.warn(fmt::format("{}: {}", columns[c].title, why));
+      if (columns[c].coarser)
+        columns[c].coarser_flight = landed(*own_.flight, *columns[c].coarser, own_.blow.ball, coarser);
     }
     for (const post::MeasuredValue& m : measured_)
       summary["measured"][fmt::format("{}_{}", m.channel->name, m.channel->unit)] = m.value / m.channel->si;
@@ -135,9 +140,10 @@ class ImpactJob final : public Job {
       nlohmann::json& said = summary["flights"][c.title] = post::to_json(*c.flight);
       if (c.coarser_flight) said["numerical_error"] = numerical_error(*c.flight, *c.coarser_flight);
       const Side* other = side_of_column(std::size_t(&c - columns.data()));
-      if (&c != &columns.back())  // the last one's doubt is told with its budget
-        if (const std::string text = outside_law(other ? *other->flight : *own_.flight, *c.flight); !text.empty())
-          out.warn(fmt::format("{}: {}", c.title, text));
+      if (&c != &columns.back())  // the last one's doubts are told with its budget
+        for (const std::string& text :
+             {outside_law(other ? *other->flight : *own_.flight, *c.flight), c.flight->no_run})
+          if (!text.empty()) out.warn(fmt::format("{}: {}", c.title, text));
       // Where the errors of the answer's carry come from; the other columns have theirs in the summary.
       if (&c == &columns.back()) try {
           said["budget"] = report_flight(out, *own_.flight, c.title, c.launch, own_.blow.ball);
@@ -179,7 +185,9 @@ class ImpactJob final : public Job {
     std::optional<FlightSetup> flight;
     std::shared_ptr<CaseFile> file = {};  ///< of a side whose loft is sought
     std::optional<LoftSets> sets = {};    ///< of the ball, where the loft chooses one of several
+    std::shared_ptr<const models::PlateOnDemand> plate = {};
     bool yields() const { return fe.face || blow.club.head.compliance; }
+    const mesh::PlateOutline* outline() const { return plate ? &plate->design().outline : nullptr; }
   };
 
   static Side read_side(Table root) {
@@ -200,6 +208,7 @@ class ImpactJob final : public Job {
       }
     }
     side.fe = options.fe;
+    side.plate = options.plate;
     for (const std::string& name : names) side.models.push_back({name, models::find(name)->make(options)});
     // A coarser companion costs a seventh of a run at the default accuracy, and every number gets its error.
     if (std::ranges::none_of(side.models, [](const Entry& e) { return e.fe() != nullptr; })) return side;
@@ -303,11 +312,15 @@ class ImpactJob final : public Job {
       out.warn(fmt::format("{}: the launch angle is {:+.2f} deg off the one that it was to match", column.title, off));
   }
 
-  /// A launch is an answer too where its ball does not reach the landing.
-  static std::optional<post::ShotFlight> landed(const FlightSetup& flight, const Launch& launch, const Ball& ball) {
+  /// A launch is an answer too where its ball does not reach the landing; `why` is then the reason.
+  static std::optional<post::ShotFlight> landed(const FlightSetup& flight, const Launch& launch, const Ball& ball,
+                                                std::string& why) {
     try {
       return flight.follow(launch, ball);
-    } catch (const std::invalid_argument&) { return {}; }
+    } catch (const std::invalid_argument& e) {
+      why = e.what();
+      return {};
+    }
   }
 
   /// Of what the case is compared with; nullptr of the case itself.
@@ -324,14 +337,17 @@ class ImpactJob final : public Job {
     const std::size_t first = columns.size(), count = side.models.size();
     columns.resize(first + count);
     std::vector<Blow> blows(count);
+    std::vector<std::string> why(count);
     for_all(std::size_t{0}, count, [&](std::size_t k) {
       const Entry& entry = side.models[k];
       blows[k] = at_measured_launch(entry, entry.blow.value_or(side.blow));
       columns[first + k] = {fmt::format("{}: {}", side.name, entry.name),
                             models::checked_launch(*entry.model, blows[k])};
-      if (side.flight) columns[first + k].flight = landed(*side.flight, columns[first + k].launch, side.blow.ball);
+      if (side.flight)
+        columns[first + k].flight = landed(*side.flight, columns[first + k].launch, side.blow.ball, why[k]);
     });
     for (std::size_t k = 0; k < count; ++k) {
+      if (!why[k].empty()) out.warn(fmt::format("{}: {}", columns[first + k].title, why[k]));
       nlohmann::json& one = said[side.models[k].name] = post::to_json(columns[first + k].launch);
       doubt_use(out, side, side.models[k], blows[k]);
       note_oblique(blows[k], columns[first + k], one);

@@ -9,6 +9,7 @@
 #include "app/command_help.hpp"
 #include "golf/first_contact.hpp"
 #include "golf/units.hpp"
+#include "models/oblique.hpp"
 #include "models/reduced/face_strike.hpp"
 #include "post/digits.hpp"
 #include "post/energy_table.hpp"
@@ -32,18 +33,13 @@ const char* side(double x, double rounding) {
 
 /// Of a ball against a wall, in whose frame people know it: the wall of the case moves and the ball rests.
 void answer_bounce(RunPage& page, const Blow& blow, const Launch& l) {
-  const FirstContact g = first_contact(blow);
-  const Vec3 after = l.velocity - g.approach, before = -g.approach;
-  const auto along = [&](const Vec3& v) { return std::abs(v.dot(g.normal)); };
-  const auto angle = [&](const Vec3& v) {
-    return degrees(std::atan2((v - v.dot(g.normal) * g.normal).norm(), along(v)));
-  };
-  page.answer("restitution", fmt::format("{:.4f}", along(after) / along(before)),
-              fmt::format("along the normal, at {:.2f} m/s", along(before)));
-  page.answer("rebound speed", fmt::format("{:.2f} m/s", after.norm()),
-              fmt::format("in the wall's frame, where it struck with {:.2f} m/s", before.norm()));
-  page.answer("rebound angle", fmt::format("{:.2f}°", angle(after)),
-              fmt::format("from the normal; it struck at {:.2f}°", angle(before)));
+  const models::WallBounce b = models::off_wall(blow, l);
+  const Vec3 wall = blow.delivery.velocity();
+  page.answer("restitution", post::fixed(b.restitution(), 4), fmt::format("along the normal, at {:.2f} m/s", b.into));
+  page.answer("rebound speed", fmt::format("{:.2f} m/s", (l.velocity - wall).norm()),
+              fmt::format("in the wall's frame, where it struck with {:.2f} m/s", wall.norm()));
+  page.answer("rebound angle", post::fixed(degrees(b.rebound_angle()), 2) + "°",
+              fmt::format("from the normal; it struck at {:.2f}°", degrees(std::atan2(b.along, b.into))));
 }
 
 /// The launch in large type, in the unit of speed that the case speaks, the other beneath.

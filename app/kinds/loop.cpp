@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <optional>
+#include <tuple>
 
 #include "app/implausible.hpp"
 #include "app/kinds/loop_common.hpp"
@@ -68,6 +69,7 @@ class LoopJob final : public Job {
       head.inertia = Vec3::Constant(std::numeric_limits<double>::infinity()).asDiagonal();
     }
     head.compliance = declared.club.head.compliance;
+    words_ = head_words(root, head.compliance, options.plate != nullptr);
     case_.inertia_declared = head.inertia.allFinite();
     if (auto flight = root.optional_table("flight")) case_.flight = read_conditions(*flight);
 
@@ -137,7 +139,7 @@ class LoopJob final : public Job {
     const loop::LoopResult result = run_loop(out, case_);
     if (result.corrected) write_corrected(out, result, *fe_, case_.loft_unknown);
     withdraw_offers(out);
-    offer_corrected(out, case_, result, fe_.get());
+    offer_corrected(out, case_, result, fe_.get(), words_);
     report_loop(out, result, case_.shots, "rows", [&] {
       if (!landings_) return;
       std::set<std::string> flagged;
@@ -148,6 +150,27 @@ class LoopJob final : public Job {
   }
 
  private:
+  /// `face` as the base reads it; one that it does not read is the named head's.
+  static HeadWords head_words(Table root, const std::optional<FaceCompliance>& face, bool plate) {
+    HeadWords words;
+    if (auto head = root.optional_table("head"))
+      if (const auto name = named_entry(*head, "name", Shelf::heads)) {
+        const HeadEntry entry = library_head(*name);
+        words.loft = entry.loft;
+        if (!entry.face.empty()) words.face = entry.face;
+      }
+    if (plate) words.face.clear();
+    if (!face) return words;
+    if (auto own = root.optional_table("face"); own && own->has("name"))
+      words.face = *named_entry(*own, "name", Shelf::faces);
+    const auto same = [](const FaceCompliance& a, const FaceCompliance& b) {
+      return std::tie(a.mass, a.stiffness, a.damping, a.half_width, a.half_height) ==
+             std::tie(b.mass, b.stiffness, b.damping, b.half_width, b.half_height);
+    };
+    if (words.face == kRigidFace || !same(library_face(words.face).face, *face)) words.face.clear();
+    return words;
+  }
+
   /// `[head]` of a loop: the mass may stand in the shots instead; cg and inertia are needed where the head turns.
   Head read_loop_head(Table table, bool turns) {
     constexpr double inf = std::numeric_limits<double>::infinity();
@@ -253,6 +276,7 @@ class LoopJob final : public Job {
   std::optional<loop::Shots> landings_;
   bool mirrored_ = false;
   std::size_t repeated_ = 0;  // rows of the file
+  HeadWords words_;
 };
 
 }  // namespace

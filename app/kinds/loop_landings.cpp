@@ -37,7 +37,8 @@ void show_landings(Output& out, const loop::Shots& shots, const std::set<std::st
                    const models::FlightConditions& conditions, bool mirrored) {
   const loop::Column *clubs = shots.find("club"), *speed = shots.find_stem("ball_speed"),
                      *angle = shots.find_stem("launch_angle"), *spin = shots.find_stem("spin_rate");
-  if (spin == nullptr) spin = shots.find_stem("backspin");
+  const bool back = spin == nullptr;  // all that the file has of the spin
+  if (back) spin = shots.find_stem("backspin");
   const loop::Column *azimuth = shots.find_stem("azimuth"), *axis = shots.find_stem("spin_axis"),
                      *sidespin = shots.find_stem("sidespin");
   const auto has = [](const loop::Column* c, std::size_t i) { return c && c->numeric && std::isfinite(c->value[i]); };
@@ -81,11 +82,11 @@ void show_landings(Output& out, const loop::Shots& shots, const std::set<std::st
     } catch (const std::invalid_argument&) {}   // it does not rise to the case's ground
   }
 
-  post::TextTable table{
-      .rows = {{"club", "shots", fmt::format("ball speed [{}]", imperial ? "mph" : "m/s"), "launch angle [deg]",
-                "spin [rpm]", fmt::format("carry [{}]", unit), fmt::format("side [{}]", unit)}},
-      .first_width = 12,
-      .least_width = 14};
+  post::TextTable table{.rows = {{"club", "shots", fmt::format("ball speed [{}]", imperial ? "mph" : "m/s"),
+                                  "launch angle [deg]", back ? "backspin [rpm]" : "spin [rpm]",
+                                  fmt::format("carry [{}]", unit), fmt::format("side [{}]", unit)}},
+                        .first_width = 12,
+                        .least_width = 14};
   for (const LandedClub& c : all)
     table.rows.push_back({c.name.empty() ? "(none)" : c.name, fmt::format("{}", c.shots),
                           spread(c.ball_speed, imperial ? 0.44704 : 1, 1), spread(c.launch_angle, kRadPerDeg, 1),

@@ -161,7 +161,7 @@ std::optional<Use> use_of_shots(const loop::ShotCase& c) {
 }
 
 void offer_corrected(Output& out, const loop::ShotCase& c, const loop::LoopResult& result,
-                     const models::ChangeableFe* base) {
+                     const models::ChangeableFe* base, const HeadWords& words) {
   if (result.adopted.empty() || result.selection.chosen.size() == 0) return;
   const loop::Inputs inputs = loop::make_inputs(c.shots, c.blow, c.head_mass_declared, {}, c.loft_unknown);
   const std::vector<Shot>& shots = inputs.trials;
@@ -182,10 +182,15 @@ void offer_corrected(Output& out, const loop::ShotCase& c, const loop::LoopResul
       shots, [&](const Shot& s) { return s.blow.club.head.mass == shots.front().blow.club.head.mass; });
   std::optional<FaceCompliance> face;
   if (base) face = models::changed(blow.club.head.compliance, found.first.change.face_compliance, blow.club.head);
-  if (found.of.head && one_mass && blow.club.head.faults().empty() && blow.club.head.inertia.allFinite())
-    offer(out, Shelf::heads, o, head_tables(blow.club.head, kRigidFace, blow.club.geometry));
-  else if (found.of.head)
-    out.tell("the head is not offered to the library: its mass is each club's own, or its inertia is not declared");
+  if (found.of.head) {
+    if (!one_mass || !blow.club.head.faults().empty() || !blow.club.head.inertia.allFinite())
+      out.tell("the head is not offered to the library: its mass is each club's own, or its inertia is not declared");
+    else if (words.face.empty() || (base && found.of.face))
+      out.tell(
+          "the head is not offered to the library: an entry names its face, and this face has no name there. Adopt "
+          "the face, name it in [face], and run the loop again");
+    else offer(out, Shelf::heads, o, head_tables(blow.club.head, words.face, words.loft, blow.club.geometry));
+  }
   if (base && (found.of.layers || found.of.ball))
     offer(out, Shelf::balls, o,
           ball_tables(blow.ball, models::changed(base->impact().ball, found.first.change, blow.ball.radius)));

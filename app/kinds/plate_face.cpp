@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <map>
 #include <nlohmann/json.hpp>
 #include <numeric>
 
@@ -178,20 +177,11 @@ class PlateFaceJob final : public PointJob {
 
   /// What the blows of the places doubt of their solutions: a sentence of a kind, with the worst of them.
   void doubt_solutions(Output& out, const std::vector<json>& points) const {
-    struct Worst {
-      std::size_t count = 0, blow = 0;
-      double value = 0;
-      std::string sentence;
-    };
-    std::map<std::string, Worst> kinds;
+    std::vector<WorstDoubt> kinds;
     for (std::size_t i = 0; i < companions_; ++i)
-      for (const json& d : points[i].value("doubts", json::array())) {
-        Worst& w = kinds[d["what"]];
-        ++w.count;
-        if (const double value = d["value"]; std::abs(value) > std::abs(w.value))
-          w.value = value, w.blow = i, w.sentence = d["sentence"];
-      }
-    for (const auto& [what, w] : kinds)
+      for (const json& d : points[i].value("doubts", json::array()))
+        note_doubt(kinds, d["what"], i, d["value"], d["sentence"]);
+    for (const WorstDoubt& w : kinds)
       out.warn(fmt::format("{} of {}; the worst, at toe {:g}, high {:g} mm: {}", w.count,
                            post::counted(companions_, "blow"), -1e3 * blows_[w.blow].place.x() + 0.0,
                            1e3 * blows_[w.blow].place.y() + 0.0, w.sentence));

@@ -11,12 +11,14 @@
 #include <mutex>
 #include <nlohmann/json.hpp>
 #include <numeric>
+#include <utility>
 
 #include "app/cases.hpp"
 #include "app/check_memory.hpp"
 #include "app/library.hpp"
 #include "app/of_file.hpp"
 #include "app/read_blow.hpp"
+#include "app/solution_doubts.hpp"
 #include "app/stored_launch.hpp"
 #include "app/study/answer.hpp"
 #include "app/study/compare.hpp"
@@ -105,7 +107,7 @@ class StudyJob final : public PointJob {
     if (!studied_ && root.has("motion"))
       left_out_ = table_.design.leave_out_rows([&](const DesignLevel& l) {
         CaseFile one(*blow_, with_own(l.set));
-        const StudyBlow asked = read_study_blow(one.root());
+        const StudyBlow asked = read_study_blow(one.root(), of_face_);
         return asked.swung && !asked.swung->motion.present;
       });
     regression_ = read_regression(root);
@@ -263,27 +265,13 @@ class StudyJob final : public PointJob {
 
   /// What the points doubt of themselves: one sentence of a kind, with the worst of them.
   void tell_doubts(Output& out, const std::vector<json>& points) const {
-    struct Worst {
-      std::size_t count = 0, point = 0;
-      double size = 0;
-      std::string sentence;
-    };
-    std::vector<std::pair<std::string, Worst>> kinds;
-    for (std::size_t p = 0; p < points.size(); ++p) {
-      if (!points[p].contains("doubts")) continue;
-      for (const json& d : points[p]["doubts"]) {
-        const std::string kind = d["kind"];
-        auto at = std::ranges::find(kinds, kind, &std::pair<std::string, Worst>::first);
-        if (at == kinds.end()) at = kinds.insert(at, {kind, {}});
-        Worst& worst = at->second;
-        const double size = std::abs(d["size"].get<double>());
-        if (worst.count++ > 0 && size <= worst.size) continue;
-        worst.point = p, worst.size = size, worst.sentence = d["sentence"];
-      }
-    }
-    for (const auto& [kind, worst] : kinds) {
-      const std::string where = table_.design.said(worst.point / table_.models.size());
-      out.warn(fmt::format("{} of {} points: {}. The worst{}{}: {}", worst.count, points.size(), kind,
+    std::vector<WorstDoubt> kinds;
+    for (std::size_t p = 0; p < points.size(); ++p)
+      for (const json& d : points[p].value("doubts", json::array()))
+        note_doubt(kinds, d["kind"], p, d["size"], d["sentence"]);
+    for (const WorstDoubt& worst : kinds) {
+      const std::string where = table_.design.said(worst.blow / table_.models.size());
+      out.warn(fmt::format("{} of {} points: {}. The worst{}{}: {}", worst.count, points.size(), worst.kind,
                            where.empty() ? "" : ", ", where, worst.sentence));
     }
   }
@@ -305,9 +293,10 @@ class StudyJob final : public PointJob {
       if (missing > 0 && missing < answered)
         out.warn(fmt::format("{}: {} of {} points have none", s.name, missing, answered));
       else if (missing > 0)
-        out.say(fmt::format(
-            "{}: no point has it{}", s.name,
-            table.outputs[s.output].starts_with("total_") ? "; a ball that rolls on needs [flight.turf]" : ""));
+        out.say(fmt::format("{}: no point has it{}", s.name,
+                            !turf_ && table.outputs[s.output].starts_with("total_")
+                                ? "; a ball that rolls on needs [flight.turf]"
+                                : ""));
     }
   }
 
@@ -379,7 +368,9 @@ class StudyJob final : public PointJob {
 
   /// The study's own tables are the blow.
   void read_blows(CaseFile& file, Table root) {
-    const StudyBlow base = read_study_blow(root);
+    table_.outputs = root.texts({"outputs", "quantities of blow, launch and flight, each with its unit"});
+    of_face_ = std::ranges::any_of(table_.outputs, asks_for_the_face);
+    const StudyBlow base = read_study_blow(root, of_face_);
     const bool struck = !base.models.front().empty();
     flies_ = base.flight.has_value();
     budgets_ = flies_ && !(base.flight->errors.empty() && base.flight->others.empty());
@@ -389,7 +380,6 @@ class StudyJob final : public PointJob {
                 "variant may be flight.law");
     blow_ = std::make_unique<CaseFile>(file, file.overrides());
     table_.models = base.models;
-    table_.outputs = root.texts({"outputs", "quantities of blow, launch and flight, each with its unit"});
     if (table_.outputs.empty()) root.fail("outputs", "name at least one quantity, ball_speed_mps for example");
     for (const std::string& name : table_.outputs) {
       if (std::ranges::count(table_.outputs, name) > 1) root.fail("outputs", fmt::format("'{}' is there twice", name));
@@ -448,6 +438,11 @@ class StudyJob final : public PointJob {
   void read_solved(Table& root) {
     const bool varies = table_.design.has(DesignFactor::Kind::variants);
     solves_ = read_solves(root, varies ? table_.design.levels(0) : std::vector<std::string>{}, flies_);
+    if (!of_face_ &&
+        std::ranges::any_of(solves_, [](const StudySolve& x) { return asks_for_the_face(x.output.name); })) {
+      of_face_ = true;
+      read_study_blow(root, true);
+    }
     if (!solves_.empty() && (conditions_.matched_launch || conditions_.bounce_speed))
       root.fail("solve", "one unknown after another: without matched_launch and keep_bounce");
     for (const StudySolve& s : solves_) {
@@ -514,7 +509,7 @@ class StudyJob final : public PointJob {
       return;
     }
     CaseFile one(*blow_, overrides(d));
-    const StudyBlow asked = read_study_blow(one.root());
+    const StudyBlow asked = read_study_blow(one.root(), of_face_);
     check_shaft(one.root(), asked.blow, asked.models);
     if (asked.models.size() != table_.models.size())
       root.fail("models", "a point may not change how many models answer");
@@ -528,10 +523,13 @@ class StudyJob final : public PointJob {
       root.fail("matched_launch",
                 fmt::format("needs a measured launch_angle of every point ({})", table_.design.said(d)));
     note_set(asked);
+    turf_ = turf_ || (asked.flight && asked.flight->turf);
     if (asked.swung && !asked.swung->motion.present) motion_ = asked.swung->motion.file;
     if (asked.swung && conditions_.matched_launch) root.fail("matched_launch", "the swing says the loft");
     if (!asked.models.front().empty() && std::isfinite(asked.blow.club.head.mass))
-      if (const std::string sentence = off_the_face(asked.blow); !sentence.empty() && off_face_++ == 0) {
+      if (const std::string sentence =
+              off_the_face(asked.blow, asked.options.plate ? &asked.options.plate->design().outline : nullptr);
+          !sentence.empty() && off_face_++ == 0) {
         const std::string point = table_.design.said(d);
         first_off_face_ = fmt::format("{}{}: {}", point.empty() ? "" : ", ", point, sentence);
       }
@@ -541,7 +539,7 @@ class StudyJob final : public PointJob {
     for (const StudySolve& s : solves_)
       for (const double end : {s.low, s.high}) {
         CaseFile sought(*blow_, with(overrides(d), s, end, true));
-        note_set(read_study_blow(sought.root()));
+        note_set(read_study_blow(sought.root(), of_face_));
         leave_study_keys(sought.root());
         sought.finish();
       }
@@ -574,7 +572,7 @@ class StudyJob final : public PointJob {
     for (const StudySolve& s : solves_) {
       if (!sought(s.name, d)) continue;
       CaseFile problem(*blow_, with(set, s, s.low, true));
-      read_study_blow(problem.root());
+      read_study_blow(problem.root(), of_face_);
       const std::string key = fmt::format("{}\n{}\n{}", s.name, model, problem.resolved());
       std::optional<double> found;
       {
@@ -641,8 +639,9 @@ class StudyJob final : public PointJob {
 
   StudyBlow blow_with(const std::vector<std::string>& set) const {
     CaseFile file(*blow_, set);
-    StudyBlow out = read_study_blow(file.root());
+    StudyBlow out = read_study_blow(file.root(), of_face_);
     if (!out.swung) return out;
+    if (out.face) out.blow.club.head.compliance = out.face;  // it turns with the club, and no model is to see it
     std::string key;  // a swing ends alike wherever on the face the ball is struck
     for (const std::string& s : set)
       if (!s.starts_with("delivery.impact_")) key += s + '\n';
@@ -655,6 +654,7 @@ class StudyJob final : public PointJob {
                    [&] { swing->end = std::make_shared<const models::SwingEnd>(out.swung->swing(out.blow.club)); });
     out.end = swing->end;
     out.swung->begin(*out.end, out.blow, out.options.shaft_mount);
+    if (out.face) out.face = std::exchange(out.blow.club.head.compliance, {});
     check_use(file.root(), use_of(out.blow), out.models);
     return out;
   }
@@ -789,7 +789,9 @@ class StudyJob final : public PointJob {
   std::map<std::array<double, 4>, std::map<std::string, Interval>> lofts_of_sets_;  ///< by head; spin lofts [deg]
   std::size_t off_face_ = 0;                                                        ///< points struck off the face
   std::string first_off_face_;
-  fs::path motion_;  ///< a swing that is not there and cannot be left out
+  bool turf_ = false;     ///< of a point
+  bool of_face_ = false;  ///< an output asks for the club's own face
+  fs::path motion_;       ///< a swing that is not there and cannot be left out
   mutable std::once_flag first_bounce_;
   mutable models::NormalImpactPoint bounce_;
 };

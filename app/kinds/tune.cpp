@@ -217,6 +217,7 @@ class TuneJob final : public Job {
       if (const loop::Column* c = shots.find_stem(stem(input)))
         if (input != Input::head_mass || !tuned("head_mass")) inputs.emplace_back(input, c);
     }
+    tell_absent(out, shots);
     const auto measured = [&](const TuneChannel& c, std::size_t row) {
       if (const loop::Column* column = shots.find_stem(c.channel.name)) return column->value[row];
       const loop::Column *rate = shots.find_stem("spin_rate"), *axis = shots.find_stem("spin_axis");
@@ -261,6 +262,22 @@ class TuneJob final : public Job {
     test_.assign(order.begin() + std::ptrdiff_t(cut), order.end());
     left_out_ = left_out;
     for (const auto& [why, n] : left_out) out.say(fmt::format("{} rows left out: {}", n, why));
+  }
+
+  /// Without speed and loft there is no blow; every other input that no column says is zero, or the head's own mass.
+  void tell_absent(Output& out, const loop::Shots& shots) const {
+    std::vector<std::string_view> zero;
+    for (int i = 0; i < kInputs; ++i) {
+      const auto input = static_cast<Input>(i);
+      if (input == Input::head_mass || shots.find_stem(stem(input)) || tuned(stem(input))) continue;
+      if (input == Input::club_speed || input == Input::dynamic_loft)
+        throw InputError(fmt::format("{}: no column for {} with its unit: without it there is no blow to compute",
+                                     shots_file_.string(), stem(input)));
+      zero.push_back(stem(input));
+    }
+    if (!zero.empty())
+      out.warn(fmt::format("{} has no column for {}: zero in every shot", shots_file_.filename().string(),
+                           fmt::join(zero, ", ")));
   }
 
   /// A [[data.keep]] with its column.

@@ -8,7 +8,9 @@
 #include <cmath>
 
 #include "app/read_blow.hpp"
+#include "app/read_face.hpp"
 #include "app/read_options.hpp"
+#include "app/read_plate.hpp"
 #include "app/solution_doubts.hpp"
 #include "golf/first_contact.hpp"
 #include "golf/quantities.hpp"
@@ -44,18 +46,11 @@ MaybeNumber extreme_force(const StudyAnswer& a, double sign) {
   return sign * out;
 }
 
-/// A blow by a wall as a bounce: velocities along the wall's normal, and along the wall after over before.
-struct WallBounce {
-  MaybeNumber restitution, ratio, angle;
-};
-WallBounce off_wall(const StudyAnswer& a) {
+/// Of a blow by a wall; `oblique`: one that has a direction along the wall.
+MaybeNumber off_wall(const StudyAnswer& a, bool oblique, double (*value)(const models::WallBounce&)) {
   if (!std::isinf(a.blow.club.head.mass)) return {};
-  const Vec3 n = first_contact(a.blow).normal, before = -a.blow.delivery.velocity(), after = a.launch.velocity + before;
-  const double v_n = -before.dot(n), u_n = after.dot(n);
-  const Vec3 across = before + v_n * n;
-  if (!(across.norm() > 0)) return {u_n / v_n, {}, {}};
-  const double u_t = after.dot(across.normalized());
-  return {u_n / v_n, u_t / across.norm(), std::atan2(u_t, u_n)};
+  const models::WallBounce bounce = models::off_wall(a.blow, a.launch);
+  return oblique && !(bounce.along > 0) ? MaybeNumber() : MaybeNumber(value(bounce));
 }
 
 models::PlateStrike plate_strike(const StudyAnswer& a) {
@@ -149,9 +144,13 @@ const std::array kBlowQuantities = {
     BlowQuantity{
         "tangential_restitution", {}, [](Given a) { return models::tangential_restitution(a.blow, a.launch); }},
     BlowQuantity{"launch_ratio", {}, [](Given a) { return models::launch_ratio(a.blow, a.launch); }},
-    BlowQuantity{"tangential_ratio", {}, [](Given a) { return off_wall(a).ratio; }},
-    BlowQuantity{"normal_restitution", {}, [](Given a) { return off_wall(a).restitution; }},
-    BlowQuantity{"rebound_angle", Dimension::angle, [](Given a) { return off_wall(a).angle; }},
+    BlowQuantity{"tangential_ratio",
+                 {},
+                 [](Given a) { return off_wall(a, true, [](auto& b) { return b.along_after / b.along; }); }},
+    BlowQuantity{
+        "normal_restitution", {}, [](Given a) { return off_wall(a, false, [](auto& b) { return b.restitution(); }); }},
+    BlowQuantity{"rebound_angle", Dimension::angle,
+                 [](Given a) { return off_wall(a, true, [](auto& b) { return b.rebound_angle(); }); }},
     BlowQuantity{
         "smash_factor", {}, [](Given a) { return MaybeNumber(a.launch.ball_speed() / a.blow.delivery.club_speed); }},
     BlowQuantity{"spin_over_rolling", {}, spin_over_rolling},
@@ -270,9 +269,20 @@ void doubt_solution(StudyAnswer& a, const std::string& model, const models::FeOu
     a.doubts.push_back({fmt::format("{}: {} is above {:g}", model, d.what, d.limit), d.value, d.sentence()});
 }
 
+/// What the club's face and head make of a strike of their own, whichever model answers.
+constexpr std::array<std::string_view, 10> kOfTheFace = {
+    "face_restitution",     "face_speed_ratio",        "face_contact_time",  "face_energy",
+    "characteristic_time",  "pendulum_slope",          "pendulum_departure", "restitution_off_rules_line",
+    "give_to_ball_m_per_N", "give_to_pendulum_m_per_N"};
+
 }  // namespace
 
-StudyBlow read_study_blow(Table root) {
+bool asks_for_the_face(const std::string& output) {
+  return std::ranges::any_of(kOfTheFace,
+                             [&](std::string_view q) { return output == q || split_unit(output).stem == q; });
+}
+
+StudyBlow read_study_blow(Table root, bool of_face) {
   if (!root.has("models") && root.has("launch")) {
     StudyBlow stated{.models = {""}};
     stated.blow.ball = read_optional_ball(root);
@@ -287,6 +297,14 @@ StudyBlow read_study_blow(Table root) {
   out.swung = read_swung_club(root, out.models, out.options.shaft_mount);
   if (auto t = root.optional_table("launch")) out.launch = read_launch(*t, false);
   out.flight = read_optional_flight(root);
+  if (of_face && !out.blow.club.head.compliance && !out.options.plate) {
+    out.face = read_club_face(root);
+    const auto plate = read_optional_plate(root);
+    if (plate && root.has("motion"))
+      root.table("face").fail("plate",
+                              "a plate does not turn with the head of a swing: give a lumped face (`hosel list`)");
+    if (plate) out.face_plate = std::make_shared<const models::PlateOnDemand>(*plate);
+  }
   if (auto t = root.optional_table("plate")) {
     out.plate = {
         t->quantity({"young", "Young's modulus of a thick elastic plate; absent: rigid"}, "GPa", Range::positive()),
@@ -355,7 +373,10 @@ models::NormalImpactPoint wall_bounce(const StudyBlow& blow, double speed) {
 
 StudyAnswer answer(const std::string& model, const StudyBlow& asked, const StudyConditions& conditions,
                    const std::optional<double>& launch_angle, const models::NormalImpactPoint* reference) {
-  StudyAnswer out{.blow = asked.blow, .face = asked.blow.club.head.compliance, .face_plate = asked.options.plate};
+  const std::optional<FaceCompliance>& face = asked.blow.club.head.compliance;  // turned with a swung club
+  StudyAnswer out{.blow = asked.blow,
+                  .face = face ? face : asked.face,
+                  .face_plate = asked.options.plate ? asked.options.plate : asked.face_plate};
   out.end = asked.end;
   models::Options options = asked.options;
   if (conditions.bounce_speed) {
@@ -408,8 +429,11 @@ StudyAnswer answer(const std::string& model, const StudyBlow& asked, const Study
       if (const std::string sentence = outside_law(*asked.flight, *out.flight); !sentence.empty())
         out.doubts.push_back({fmt::format("a flight outside the range of {}", asked.flight->conditions.law.name),
                               out.flight->flight.outside, sentence});
-    } catch (const std::invalid_argument&) {
-    }  // the ball does not reach the landing: the launch is an answer all the same
+      if (const std::string& sentence = out.flight->no_run; !sentence.empty())
+        out.doubts.push_back({"a flight without a total", 1, sentence});
+    } catch (const std::invalid_argument& e) {  // the launch is an answer all the same
+      out.doubts.push_back({"a launch without a landing", 1, e.what()});
+    }
   return out;
 }
 

@@ -30,9 +30,15 @@ struct StudyBlow {
   std::optional<models::ElasticSolid> plate;         ///< the wall, where it is not rigid
   std::optional<SwungClub> swung;                    ///< where a swing delivers the club
   std::shared_ptr<const models::SwingEnd> end = {};  ///< of that, once it was swung: `blow` begins there
-  std::optional<LoftSets> sets = {};                 ///< of the ball, where the loft chooses one of several
+  /// The club's own face, where it is asked for and none of the models reads it: the blow does not have it.
+  std::optional<FaceCompliance> face = {};
+  std::shared_ptr<const models::PlateOnDemand> face_plate = {};
+  std::optional<LoftSets> sets = {};  ///< of the ball, where the loft chooses one of several
 };
-StudyBlow read_study_blow(Table root);
+/// `of_face`: an output asks for the club's own face.
+StudyBlow read_study_blow(Table root, bool of_face = false);
+/// Whether an output is what face and head make of a strike of their own, whichever model answers.
+bool asks_for_the_face(const std::string& output);
 
 /// Conditions under which variants of a club or ball are compared.
 struct StudyConditions {

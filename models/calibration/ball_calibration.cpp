@@ -11,6 +11,7 @@
 #include "models/fe/impact.hpp"
 #include "models/matched_launch.hpp"
 #include "models/oblique.hpp"
+#include "models/sliding_friction.hpp"
 #include "solvers/errors.hpp"
 #include "solvers/least_squares.hpp"
 
@@ -71,7 +72,8 @@ class Fit {
   ContactLaw contact(const Eigen::VectorXd& x) const {
     ContactLaw out{.patch = problem_.friction};
     for (std::size_t k = 0; k < problem_.free.size(); ++k)
-      if (problem_.free[k].what == What::friction) out.patch.coefficient *= std::exp(x[Eigen::Index(k)]);
+      if (problem_.free[k].what == What::friction)
+        slide(out.patch, out.patch.coefficient * std::exp(x[Eigen::Index(k)]));
     return out;
   }
 

@@ -175,9 +175,13 @@ solvers::NewtonOptions Swing::newton() const {
   return {.residual_relative = t, .residual_absolute = t, .increment_vector = 0.1 * t, .increment_rotation = 0.1 * t};
 }
 
-fem::State Swing::equilibrium(double time) {
+void Swing::check_held() const {
   if (drive_.kind != GripDrive::Kind::prescribed && drive_.kind != GripDrive::Kind::hands)
     throw std::invalid_argument("a club that nothing holds has no equilibrium");
+}
+
+fem::State Swing::equilibrium(double time) {
+  check_held();
   const Held held(held_, time);
   fem::State s = straight(time);
   s.v.setZero();
@@ -224,6 +228,7 @@ fem::State Swing::carried(const fem::State& shape, const fem::Pose& from, const 
 }
 
 fem::State Swing::hold(double time, double seconds) {
+  check_held();
   const Held held(held_, time);
   fem::State s = straight(time);
   s.time = time - seconds;

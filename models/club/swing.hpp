@@ -80,7 +80,8 @@ class Swing {
   /// Throws std::invalid_argument on a club without shaft, or bad options.
   Swing(const Club& club, const SwingOptions& options, GripDrive drive);
 
-  /// Static equilibrium under gravity with the grip held as it is at `time`.
+  /// Static equilibrium under gravity with the grip held as it is at `time`. Throws std::invalid_argument, as hold()
+  /// does, where nothing holds the club.
   fem::State equilibrium(double time);
   /// The grip held for `seconds` up to `time`, from the straight shaft: what an experiment does.
   fem::State hold(double time, double seconds);
@@ -105,6 +106,7 @@ class Swing {
   const solvers::GeneralizedAlpha::Counts& counts() const { return counts_; }
 
  private:
+  void check_held() const;
   fem::State straight(double time) const;
   fem::State carried(const fem::State& shape, const fem::Pose& from, const fem::Pose& grip, double time) const;
   solvers::NewtonOptions newton() const;

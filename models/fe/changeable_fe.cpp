@@ -8,6 +8,7 @@
 #include "golf/units.hpp"
 #include "models/fe/impact.hpp"
 #include "models/reduced/face_strike.hpp"
+#include "models/sliding_friction.hpp"
 
 namespace hosel::models {
 namespace {
@@ -81,7 +82,7 @@ Launch ChangeableFe::launch(const Blow& blow, const FeChange& change) const {
   impact.ball = changed(impact.ball, change, blow.ball.radius);
   Blow struck = blow;
   struck.club.head.compliance = changed(blow.club.head.compliance, change.face_compliance, blow.club.head);
-  if (std::isfinite(blow.contact.friction)) struck.contact.patch.coefficient = blow.contact.friction;
+  if (std::isfinite(blow.contact.friction)) slide(struck.contact.patch, blow.contact.friction);
   if (share(change) == 0) return Impact(impact).launch(struck);
   if (!shaft_) throw std::invalid_argument("the club has no shaft");
   struck.club.shaft = changed(*shaft_, share(change), change.shaft_stiffness);

@@ -6,6 +6,7 @@
 #include "fem/materials/linear_elastic.hpp"
 #include "golf/first_contact.hpp"
 #include "models/oblique.hpp"
+#include "models/sliding_friction.hpp"
 
 namespace hosel::models {
 namespace {
@@ -66,9 +67,7 @@ ElasticPlate::ElasticPlate(FeImpactOptions sphere, const ElasticSolid& plate, co
 FeOutcome ElasticPlate::run(const Blow& blow) const {
   if (std::isfinite(blow.club.head.mass)) throw std::invalid_argument("elastic plate: it is a wall, not a head");
   Blow instead = blow;
-  PatchFriction& patch = instead.contact.patch;
-  patch.coefficient *= friction_;
-  if (patch.at_rest) patch.at_rest->coefficient *= friction_;
+  slide(instead.contact.patch, friction_ * blow.contact.patch.coefficient);
   FeOutcome outcome = Impact(stand_in_).run(instead);
   Launch& out = outcome.launch;
   const std::optional<double> e_t = tangential_restitution(blow, out);

@@ -57,7 +57,9 @@ Vec3 rest(Vec3 from, Vec3 velocity, double rolling, double slope) {
 
 Run run_out(const FlightPoint& landing, const Ball& ball, const Ground& ground, const BounceRoll& turf) {
   constexpr double last_hop = 5e-3;
-  constexpr int most_bounces = 200;  // a ball that stops at all has stopped after a few dozen
+  // Down a slope each hop is nearly as high as the one before: 40 bounces on the level, 270 at 3 deg, and from 3.1 deg
+  // on the hops keep a height for ever.
+  constexpr int most_bounces = 2000;
   Run out;
   // In the axes of the ground: x up the slope, z out of it.
   const Mat3 turn = Eigen::AngleAxisd(ground.slope, Vec3::UnitY()).toRotationMatrix();

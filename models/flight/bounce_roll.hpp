@@ -29,8 +29,8 @@ struct Run {
   std::vector<Vec3> path;  ///< of the ball's centre from the landing to its rest
 };
 
-/// Throws std::invalid_argument on a slope on which a ball rolls on for ever, std::domain_error where the ball comes
-/// faster than the law of the turf knows (a topped drive).
+/// Throws std::invalid_argument on a slope on which a ball bounces or rolls on for ever, std::domain_error where the
+/// ball comes faster than the law of the turf knows (a topped drive).
 Run run_out(const FlightPoint& landing, const Ball& ball, const Ground& ground, const BounceRoll& turf = {});
 
 }  // namespace hosel::models

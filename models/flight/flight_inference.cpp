@@ -149,8 +149,9 @@ class Estimate {
   }
   void set_scale() {
     std::vector<double> sorted = fit_.misfit;
-    std::ranges::nth_element(sorted, sorted.begin() + std::ptrdiff_t(sorted.size() / 2));
-    scale_ = std::max(kLoss * sorted[sorted.size() / 2], std::numeric_limits<double>::min());
+    std::ranges::sort(sorted);
+    const double median = 0.5 * (sorted[(sorted.size() - 1) / 2] + sorted[sorted.size() / 2]);
+    scale_ = std::max(kLoss * median, std::numeric_limits<double>::min());
   }
   /// A shot's loss, s atan(m / s) of its misfit m over the scale s, has this derivative: its weight.
   double weight(std::size_t i) const { return 1 / (1 + std::pow(fit_.misfit[i] / scale_, 2)); }

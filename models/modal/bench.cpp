@@ -208,7 +208,7 @@ Bench::Bench(const Club& club, bool with_head, const BenchOptions& options, cons
     root.bottomRightCorner(6, 6) = of_head.vectors * of_head.values.cwiseMax(0).cwiseSqrt().asDiagonal();
     return root;
   };
-  const double bend = length_ / club.shaft->at(0.5 * length_).bending_stiffness_y;
+  const double bend = length_ / club.shaft->at(options.clamped_length + 0.5 * length_).bending_stiffness_y;
   std::vector<MatrixXd> parts;
   const auto with = [&](const ClubChange& c, int count) {
     MatrixXd sum = F[kBending] + F[kTorsion];

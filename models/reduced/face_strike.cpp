@@ -15,7 +15,7 @@
 namespace hosel::models {
 namespace {
 
-constexpr double kBallStiffness = 1.68e6;  // secant, of golf_ball() [N/m]
+constexpr double kBallStiffness = 1.68e6;  // effective, fitted [N/m]
 
 /// The equations of strike() for solvers::RosenbrockW; with A = 0 its steps are explicit.
 struct Strike {

@@ -61,7 +61,7 @@ StickSlipPath stick_slip_path(const Blow& blow, const ImpulseProblem& p) {
     tangential = stop + out.normal_impulse * hold;
   } else {
     closing = p_slide * sliding >= approach ? approach / sliding : p_slide + (approach - p_slide * sliding) / sticking;
-    if (!(closing > 0))
+    if (!(closing > 0 && std::isfinite(closing)))
       throw std::invalid_argument("stick-slip: friction jams the contact (sliding does not close it)");
     out.normal_impulse = (1 + e) * closing;
     const double slid = std::min(p_slide, out.normal_impulse);

@@ -36,7 +36,8 @@ class Model:
             club_path, face_angle, dynamic_loft, impact_toe, impact_high, head_mass. Inputs that are not given are the case's.
         Returns a dict of arrays of the broadcast shape: ball_speed_mps, launch_angle_deg, azimuth_deg, backspin_rpm, ...
         Raises InputError (a ValueError) or NonConvergence naming the first blow that has no answer. All blows are checked
-        first: if the case would be refused with one (outside the range of its ball's data), nothing is computed.
+        first: if the case would be refused with one (outside the range of its ball's data), nothing is computed. Warns
+        where blows strike the ball off the face.
         """
         arrays = np.broadcast_arrays(*(_numbers(x) for x in inputs.values())) if inputs else [np.zeros(())]
         shape = arrays[0].shape

@@ -1,13 +1,18 @@
 // From a finished run to an entry of the library, and on into a case of another kind.
 #include <gtest/gtest.h>
 
+#include <fmt/format.h>
+
 #include <cstdlib>
 #include <nlohmann/json.hpp>
+#include <random>
 
 #include "app/library.hpp"
 #include "app/offer.hpp"
 #include "app/parse_toml.hpp"
 #include "command.hpp"
+#include "golf/units.hpp"
+#include "models/registry.hpp"
 
 namespace {
 
@@ -164,6 +169,53 @@ TEST(Offer, ABallGoesThroughItsFile) {
     EXPECT_NEAR(copy.layers.layers[k].material.instant_shear(), shipped.layers.layers[k].material.instant_shear(),
                 1e-15 * shipped.layers.layers[k].material.instant_shear() * 4);
   }
+}
+
+/// A head whose centre of gravity a loop corrects keeps its face and its loft; an entry names its face, so that one of
+/// the case's own values is refused.
+TEST_F(Adopt, AHeadKeepsFaceAndLoft) {
+  std::mt19937_64 random(1);
+  const auto uniform = [&](double a, double b) { return a + (b - a) * double(random() >> 11) * 0x1.0p-53; };
+  Blow blow;
+  blow.club.head = library_head("driver-460").head;
+  blow.club.head.cg.y() -= 0.006;  // towards the toe of where the case says
+  std::string shots =
+      "shot,club_speed_mps,attack_angle_deg,club_path_deg,face_angle_deg,dynamic_loft_deg,impact_toe_mm,impact_high_mm,"
+      "ball_speed_mps,launch_angle_deg,azimuth_deg,backspin_rpm,sidespin_rpm\n";
+  const auto model = models::find("rigid-eccentric")->make({});
+  std::normal_distribution<double> normal;
+  for (int i = 1; i <= 60; ++i) {
+    blow.delivery = {.club_speed = uniform(42, 48),
+                     .attack_angle = radians(uniform(-2, 4)),
+                     .club_path = radians(uniform(-3, 3)),
+                     .dynamic_loft = radians(uniform(9, 15)),
+                     .face_angle = radians(uniform(-3, 3)),
+                     .impact_toe = uniform(-0.015, 0.015),
+                     .impact_high = uniform(-0.008, 0.008)};
+    const Launch l = model->launch(blow);
+    const Delivery& d = blow.delivery;
+    shots += fmt::format("{},{:.3f},{:.3f},{:.3f},{:.3f},{:.3f},{:.3f},{:.3f},{:.2f},{:.2f},{:.2f},{:.0f},{:.0f}\n", i,
+                         d.club_speed, degrees(d.attack_angle), degrees(d.club_path), degrees(d.face_angle),
+                         degrees(d.dynamic_loft), 1e3 * d.impact_toe, 1e3 * d.impact_high,
+                         l.ball_speed() + 0.1 * normal(random), degrees(l.launch_angle()) + 0.1 * normal(random),
+                         degrees(l.azimuth()) + 0.1 * normal(random), rpm(l.backspin()) + 40 * normal(random),
+                         rpm(l.sidespin()) + 40 * normal(random));
+  }
+  write(dir / "loop/shots.csv", shots);
+  write(dir / "loop/case.toml",
+        "kind = \"loop\"\n[model]\nbase = \"rigid-eccentric\"\n[head]\nname = \"driver-460\"\n[data]\nshots = "
+        "\"shots.csv\"\n[data.noise]\nball_speed_mps = 0.1\nlaunch_angle_deg = 0.1\nazimuth_deg = 0.1\nbackspin_rpm = "
+        "40\nsidespin_rpm = 40\n");
+  const Outcome o = command("run " + (dir / "loop").string() + " --out " + (dir / "out").string());
+  ASSERT_EQ(o.status, 0) << o.text;
+  const std::string entry = content(dir / "out/entries/head.toml");
+  EXPECT_NE(entry.find("face = \"modern-driver\""), std::string::npos) << entry << o.text;
+  EXPECT_NE(entry.find("loft_deg = 10"), std::string::npos) << entry;
+  const Outcome made = adopt(dir / "out", "--as corrected");
+  ASSERT_EQ(made.status, 0) << made.text;
+  const HeadEntry head = library_head("corrected");
+  EXPECT_EQ(head.face, "modern-driver");
+  EXPECT_NEAR(head.head.cg.y(), blow.club.head.cg.y(), 2e-3);
 }
 
 }  // namespace

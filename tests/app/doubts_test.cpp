@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "app/read_blow.hpp"
 #include "app/study/solve.hpp"
 #include "command.hpp"
 #include "solvers/errors.hpp"
@@ -260,6 +261,55 @@ contact_time_sigma_ms = 0.2
   EXPECT_FALSE(fs::exists(dir / "out/entries/ball.toml"));
 }
 
+/// A shot was seen at the loft that meets its launch angle, not where the search for it began.
+TEST(Doubts, AnOfferedBallSawTheLoftsThatWereFound) {
+  const fs::path dir = fresh_directory("doubts_seen");
+  write(dir / "case/case.toml", R"(kind = "calibrate-ball"
+[[ball.layers]]
+law = "neo-hooke"
+c10_MPa = 12
+bulk_MPa = 1000
+branch_moduli_MPa = [50]
+branch_times_ms = [0.01]
+[contact]
+face_friction = 0.3
+[mesh]
+sector = 1
+rings = 1
+harmonics = 2
+[time]
+steps_per_contact = 40
+[[free]]
+what = "branch-moduli"
+[target]
+speeds_mps = [30]
+restitution = 0.75
+restitution_slope_s_per_m = 0
+restitution_sigma = 0.01
+contact_speed_mps = 30
+contact_time_ms = 0.5
+contact_time_sigma_ms = 0.2
+[[shots]]
+name = "iron"
+launch_angle_deg = 20
+spin_rate_rpm = 6000
+spin_sigma = 1.0
+[shots.delivery]
+club_speed_mps = 35
+dynamic_loft_deg = 16
+[shots.head]
+mass_kg = 0.27
+cg_mm = [-10, 0, 0]
+inertia_kg_m2 = [[3e-4, 0, 0], [0, 1e-4, 0], [0, 0, 3e-4]]
+)");
+  const Outcome o = command("run " + (dir / "case").string() + " --out " + (dir / "out").string());
+  ASSERT_EQ(o.status, 0) << o.text;
+  const std::string entry = content(dir / "out/entries/ball.toml");
+  const auto at = entry.find("spin_loft_deg = [0, ");
+  ASSERT_NE(at, entry.npos) << o.text << entry;
+  EXPECT_GT(std::stod(entry.substr(at + 20)), 20) << entry;
+}
+
 TEST(Doubts, ASpeedOfTheContactTimeThatIsNoneIsRefusedAtItsKey) {
   const fs::path dir = fresh_directory("doubts_speeds");
   const auto check = [&](const std::string& target) {
@@ -274,6 +324,51 @@ TEST(Doubts, ASpeedOfTheContactTimeThatIsNoneIsRefusedAtItsKey) {
                  "case.toml:12: target.contact_speed_mps: the contact time is wanted at 25 m/s, which is none of the "
                  "speeds (20, 30 m/s)");
   expect_refused(check("speeds_mps = [20, 30]\n"), "case.toml:11: target.speeds_mps: the contact time is wanted at 40");
+}
+
+/// A plate ends at its outline, and an ellipse that lies turned on the face at its own.
+TEST(Doubts, ABallBesideTheFacesOwnOutlineIsOffTheFace) {
+  using namespace hosel;
+  Blow blow;
+  blow.delivery.impact_toe = 0.052;
+  const mesh::PlateOutline plate;  // 45 mm to either side
+  EXPECT_EQ(app::off_the_face(blow), "");
+  EXPECT_NE(app::off_the_face(blow, &plate).find("52 mm towards the toe and 0 mm up, beside the outline"),
+            std::string::npos);
+  blow.delivery.impact_toe = 0.044;
+  EXPECT_EQ(app::off_the_face(blow, &plate), "");
+  FaceCompliance& face = blow.club.head.compliance.emplace();
+  face.half_width = 0.045;
+  face.half_height = 0.02;
+  EXPECT_EQ(app::off_the_face(blow), "");
+  face.turn = kPi / 2;
+  EXPECT_NE(app::off_the_face(blow), "");
+}
+
+/// What a mesh cannot have is refused at its key, once.
+TEST(Doubts, ASizeAtTheOtherPoleThatCancelsTheGradingIsRefusedAtItsKey) {
+  const fs::path dir = fresh_directory("doubts_far");
+  write(dir / "case.toml",
+        "kind = \"impact\"\nmodels = [\"fe-free-body\"]\n[delivery]\nclub_speed_mps = 40\n[head]\n"
+        "name = \"driver-460\"\n[ball]\nmodel = \"tour\"\n[mesh]\npole = 0.3\nfar = 1.1\n");
+  expect_refused(command("check " + dir.string()), "case.toml:11: mesh.far: far must be at least 2 - pole");
+}
+
+/// A shaft that is condensed with its butt clamped knows no other hold.
+TEST(Doubts, AHoldThatTheModelDoesNotKnowIsRefused) {
+  const fs::path dir = fresh_directory("doubts_hold");
+  const auto check = [&](const std::string& models, const std::string& hold) {
+    write(dir / "case.toml",
+          "kind = \"impact\"\nmodels = [" + models +
+              "]\n[delivery]\nclub_speed_mps = 40\ndynamic_loft_deg = 12\n[head]\nname = "
+              "\"driver-460\"\n[shaft]\nname = \"composite-driver\"\n[ball]\nmodel = \"tour\"\n[grip]\n"
+              "hold = \"" +
+              hold + "\"\n");
+    return command("check " + dir.string());
+  };
+  EXPECT_EQ(check("\"shaft-coupled\"", "clamped").status, 0);
+  expect_refused(check("\"shaft-coupled\"", "free"), "case.toml:13: grip.hold: shaft-coupled condenses a shaft");
+  EXPECT_EQ(check("\"shaft-coupled\", \"fe-full-club\"", "free").status, 0);
 }
 
 }  // namespace

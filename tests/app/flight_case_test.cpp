@@ -273,6 +273,45 @@ TEST(FlightCase, AStudyOfBlowsTakesNoErrorOfALaunch) {
   }
 }
 
+/// The ball lands, and then bounces on for ever, or comes faster than the turf's law knows: the flight is an answer,
+/// and the reason why there is no total is told.
+TEST(FlightCase, AFlightWhoseRunHasNoEndHasACarry) {
+  for (const auto& [flight, set, why] :
+       {std::tuple{"ground.slope_deg = -3.5\n", "", "on this slope a bouncing ball does not come to rest"},
+        {"", " --set delivery.dynamic_loft_deg=1 --set delivery.attack_angle_deg=-1 --set delivery.club_speed_mps=70",
+         "above 54 m/s the turf's law turns the ball back"}}) {
+    const fs::path dir = fresh_directory("flight_no_run");
+    const std::string tables = std::string("[flight]\n") + flight + "[flight.turf]\n";
+    write(dir / "case.toml", kEccentricBlow + tables);
+    const auto run = [&] { return command("run " + dir.string() + " --force --out " + (dir / "out").string() + set); };
+    const Outcome o = run();
+    ASSERT_EQ(o.status, 0) << o.text;
+    EXPECT_NE(o.text.find(std::string("warning: rigid-eccentric: the carry has no total: bounce and roll: ") + why),
+              std::string::npos)
+        << o.text;
+    const auto shot = nlohmann::json::parse(content(dir / "out/summary.json"))["flights"]["rigid-eccentric"];
+    EXPECT_GT(shot["carry_yd"].get<double>(), 10);
+    EXPECT_FALSE(shot.contains("total_yd"));
+    // A study says the same, and does not ask for the turf that is there.
+    write(dir / "case.toml", study_of_blow("[\"carry_m\", \"total_m\"]") + tables +
+                                 "[[axis]]\nkey = \"delivery.club_path_deg\"\nvalues = [0, 0.1]\n");
+    const Outcome points = run();
+    ASSERT_EQ(points.status, 0) << points.text;
+    EXPECT_NE(points.text.find("2 of 2 points: a flight without a total."), std::string::npos) << points.text;
+    EXPECT_NE(points.text.find(why), std::string::npos) << points.text;
+    EXPECT_NE(points.text.find("no point has it"), std::string::npos) << points.text;
+    EXPECT_EQ(points.text.find("needs [flight.turf]"), std::string::npos) << points.text;
+    EXPECT_EQ(CsvFile(dir / "out/points.csv").text("carry_m", 1).empty(), false);
+  }
+}
+
+/// A law beside the case's is as published: what multiplies the case's own is named with it.
+TEST(FlightCase, AFactorOnTheLawIsTold) {
+  Outcome o;
+  run("flight_factor", kEccentricBlow + "[flight]\ndrag_scale = 0.9\n", &o);
+  EXPECT_NE(o.text.find("ferguson-2022 (drag x 0.9) in air of"), std::string::npos) << o.text;
+}
+
 TEST(FlightCase, ABadTableIsOneLine) {
   for (const auto& [text, says] : {std::pair{"law = \"fergusen-2022\"\n", "did you mean 'ferguson-2022'"},
                                    {"units = \"feet\"\n", "allowed: yards, metres"},

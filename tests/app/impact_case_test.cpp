@@ -327,6 +327,22 @@ TEST(ImpactCase, ABallThatDoesNotReachTheGroundHasALaunch) {
   EXPECT_NE(s["doubts"][0].get<std::string>().find("does not rise to the ground"), std::string::npos);
 }
 
+/// Nor does a compared column go without a word: where its ball does not land, and where it is struck off the face.
+TEST(ImpactCase, AComparedColumnIsDoubtedToo) {
+  const fs::path dir = fresh_directory("impact_compared_doubts");
+  write(dir / "case.toml", kEccentricBlow +
+                               "[flight]\nground.height_m = 5\n[[compare]]\nname = \"low\"\n"
+                               "set = [\"delivery.dynamic_loft_deg=1\"]\n[[compare]]\nname = \"wide\"\n"
+                               "set = [\"delivery.impact_toe_mm=80\"]\n");
+  const Outcome o = command("run " + dir.string() + " --out " + (dir / "out").string());
+  ASSERT_EQ(o.status, 0) << o.text;
+  EXPECT_NE(o.text.find("warning: low: rigid-eccentric: flight: the ball does not rise to the ground"),
+            std::string::npos)
+      << o.text;
+  EXPECT_NE(o.text.find("warning: wide: the ball is struck off the face: 80 mm towards the toe"), std::string::npos)
+      << o.text;
+}
+
 TEST(ImpactCase, AComparedColumnIsTheCaseThatItSays) {
   const fs::path dir = fresh_directory("impact_compared");
   const std::string flight = "[flight]\nlaw = \"ferguson-2022\"\n";

@@ -328,7 +328,7 @@ TEST(CalibrateReduced, ASetNamesAFaceThatIsNotTheHeads) {
   const auto set_of = [&](const std::string& face) {
     summary_of(dir,
                "kind = \"calibrate-reduced\"\naccuracy = \"look\"\n[delivery]\nclub_speed_mps = 30\n"
-               "dynamic_loft_deg = 20\n[head]\nname = \"iron-7\"\n" +
+               "dynamic_loft_deg = 20\nattack_angle_deg = -2\n[head]\nname = \"iron-7\"\n" +
                    face +
                    "[ball]\nmodel = \"range\"\n[[sets]]\nname = \"irons\"\nclub_speeds_mps = [30, 34]\n"
                    "lofts_deg = [20, 24]\n");
@@ -338,6 +338,7 @@ TEST(CalibrateReduced, ASetNamesAFaceThatIsNotTheHeads) {
                     other = set_of("[face]\nname = \"forged-iron\"\n");
   EXPECT_EQ(unnamed, own);
   EXPECT_EQ(unnamed.find("faces"), std::string::npos) << unnamed;
+  EXPECT_NE(unnamed.find("spin_loft_deg = [22, 26]"), std::string::npos) << unnamed;  // from the path, not from level
   EXPECT_NE(other.find("faces = [\"forged-iron\"]"), std::string::npos) << other;
 }
 

@@ -116,8 +116,8 @@ TEST(RunPage, SpeaksTheUnitsThatWereAskedFor) {
   const std::string golf = asked("golf"), metric = asked("metric");
   const double speed =
       json::parse(content(dir / "out/summary.json"))["models"]["rigid-eccentric"]["ball_speed_mps"].get<double>();
-  EXPECT_TRUE(std::regex_search(golf, std::regex(fmt::format("ball_speed \\[mph\\] +{:.2f}", speed / 0.44704))));
-  EXPECT_TRUE(std::regex_search(metric, std::regex(fmt::format("ball_speed \\[m/s\\] +{:.2f}", speed))));
+  EXPECT_TRUE(std::regex_search(golf, std::regex(fmt::format("ball speed \\[mph\\] +{:.2f}", speed / 0.44704))));
+  EXPECT_TRUE(std::regex_search(metric, std::regex(fmt::format("ball speed \\[m/s\\] +{:.2f}", speed))));
   EXPECT_TRUE(holds(golf, "carry [yd]") && !holds(golf, "carry [m]"));
   EXPECT_TRUE(holds(metric, "carry [m]") && !holds(metric, "carry [yd]"));
   EXPECT_TRUE(holds(golf, fmt::format("<b>{:.1f} mph</b>", speed / 0.44704)));

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <regex>
 
+#include "app/read_series.hpp"
 #include "app/read_shaft.hpp"
 #include "app/read_solid.hpp"
 #include "fem/materials/hyperelastic.hpp"
@@ -149,4 +150,20 @@ TEST(ReadTables, EachChangeOfABallIsItsOwn) {
 }
 
 }  // namespace
+/// A strain is in the unit that its column says; one that nobody knows is no m/m.
+TEST(ReadSeries, AStrainHasAKnownUnit) {
+  const auto dir = test::fresh_directory("series_strain");
+  const auto si = [&](const std::string& column) {
+    test::write(dir / "record.csv", "time_ms," + column + "\n0,1\n1,2\n");
+    std::vector<std::string> notes;
+    return read_series(dir / "record.csv", nullptr, 1.0, 0.0, 1000, notes).channels.front().si;
+  };
+  EXPECT_EQ(si("strain_lead"), 1);
+  EXPECT_EQ(si("strain_droop_ustrain"), 1e-6);
+  EXPECT_EQ(si("strain_gauge2_um_per_m"), 1e-6);
+  EXPECT_EQ(si("strain_lead_pct"), 1e-2);
+  EXPECT_THROW(si("strain_lead_mV"), InputError);
+  EXPECT_THROW(si("strain_lead_microstrain"), InputError);
+}
+
 }  // namespace hosel::app

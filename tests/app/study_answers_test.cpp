@@ -514,4 +514,29 @@ height_m = HEIGHT
   EXPECT_FALSE(without.contains("half_width_95")) << without;
 }
 
+/// What face and head make of a strike is theirs, whichever model answers; a model that knows no face takes a plate
+/// too.
+TEST(StudyAnswers, TheClubsFaceIsItsOwnWhicheverModelAnswers) {
+  const fs::path dir = fresh_directory("study_own_face");
+  const std::string plate = "[face.plate]\nthickness = {value_mm = 3.0}\n";
+  const auto told = [&](const std::string& models, const std::string& face) {
+    const Outcome o = run(dir, "kind = \"study\"\nmodels = [" + models +
+                                   "]\noutputs = [\"characteristic_time_us\", \"face_restitution\"]\n[[axis]]\nkey = "
+                                   "\"delivery.club_path_deg\"\nvalues = [0, 1]\n" +
+                                   "[delivery]\nclub_speed_mps = 48.77\ndynamic_loft_deg = 12\n[head]\n"
+                                   "name = \"driver-460\"\n[volumetric]\npublished = \"driver\"\n" +
+                                   face);
+    EXPECT_EQ(o.status, 0) << o.text;
+    const CsvFile points(dir / "out/points.csv");
+    return std::pair{points.number("characteristic_time_us", 0), points.number("face_restitution", 0)};
+  };
+  const auto reduced = told("\"volumetric\"", ""), rigid = told("\"rigid-eccentric\"", "");
+  EXPECT_GT(reduced.first, 200);  // of a rigid face 33 us
+  EXPECT_EQ(rigid, reduced);
+  EXPECT_LT(told("\"rigid-eccentric\"", "[face]\nname = \"rigid\"\n").first, 50);
+  EXPECT_GT(told("\"rigid-eccentric\"", plate).first, 100);
+  // Where no output asks for the face, a key that changes nothing is refused as before.
+  refused(study("", "[face]\nname = \"modern-driver\"\n" + kMasses), "face");
+}
+
 }  // namespace

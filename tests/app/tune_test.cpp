@@ -478,7 +478,7 @@ position_mm = [-15.0, 55.0, 10.0]
 [volumetric]
 published = "driver"
 )";
-  const std::string hands = "[grip]\nhold = \"forced\"\nforce_N = [-55, 2, 332]\nmoment_N_m = [-1, 40, -1]\n";
+  const std::string hands = "[grip]\nforce_N = [-55, 2, 332]\nmoment_N_m = [-1, 40, -1]\n";
   const auto d = test::fresh_directory("tune_loaded");
   std::ofstream table(d / "shots.csv");
   table << std::setprecision(12) << "shot,club_speed_mps,dynamic_loft_deg,ball_speed_mps,backspin_rpm\n";
@@ -538,6 +538,31 @@ TEST(RollingIrons, FiguresOfTheSecondSource) {
   EXPECT_EQ(theory["statements"][0]["share"], 1.0);  // spin over sin(loft): 11205.4 and 11119.7 rpm
   EXPECT_EQ(theory["statements"][1]["verdict"], "holds");
   EXPECT_NEAR(theory["range"]["launch_angle_deg"][1].get<double>(), 44.684, 5e-4);  // of the other ball; own 44.683
+}
+
+/// Without speed and loft there is no blow; what else no column says is zero, and that is told.
+TEST(Tune, AnAbsentColumnIsNoSilentZero) {
+  const auto d = test::fresh_directory("tune_absent");
+  const auto tuned = [&](const std::string& columns, const std::string& cells) {
+    test::write(d / "shots.csv", "shot," + columns + ",ball_speed_mps\n1," + cells + ",60\n2," + cells + ",61\n");
+    test::write(d / "case.toml",
+                "kind = \"tune\"\nmodel = \"rigid-planar\"\n[head]\nmass_kg = 0.2\n[data]\nshots = "
+                "\"shots.csv\"\n[data.noise]\nball_speed_mps = 0.5\n[split]\ntrain_fraction = 1\n"
+                "[[parameters]]\nname = \"restitution\"\n");
+    return test::command("run " + d.string() + " --force --out " + (d / "out").string());
+  };
+  test::expect_refused(tuned("club_speed_mps,attack_angle_deg", "45,0"), "no column for dynamic_loft");
+  test::expect_refused(tuned("dynamic_loft_deg,attack_angle_deg", "12,0"), "no column for club_speed");
+  const test::Outcome o = tuned("club_speed_mps,dynamic_loft_deg,impact_toe_mm,impact_high_mm", "45,12,1,1");
+  ASSERT_EQ(o.status, 0) << o.text;
+  EXPECT_NE(o.text.find("warning: shots.csv has no column for attack_angle, club_path, face_angle: zero in every shot"),
+            std::string::npos)
+      << o.text;
+  // Of several sets none is the one: each shot has its loft, and nothing is swung.
+  test::write(d / "case.toml",
+              "kind = \"tune\"\nmodel = \"rigid-eccentric\"\n[head]\nname = \"driver-460\"\n[ball]\n"
+              "model = \"tour\"\n");
+  test::expect_refused(test::command("check " + d.string()), "each shot has a loft of its own: say which by `reduced`");
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <regex>
 
 #include "golf/shaft_library.hpp"
 #include "golf/units.hpp"
@@ -170,4 +171,14 @@ TEST(ScaledTip, SoftensInBetweenAsItSays) {
 }
 
 }  // namespace
+/// What is said of a shaft's mass is the mass that it has.
+TEST(ShaftLibrary, AShaftWeighsWhatIsSaidOfIt) {
+  for (const NamedShaft& shaft : shaft_library()) {
+    std::smatch said;
+    const std::string text(shaft.what);
+    ASSERT_TRUE(std::regex_search(text, said, std::regex("([0-9]+) g"))) << text;
+    EXPECT_NEAR(1e3 * mass(shaft.make()), std::stod(said[1]), 0.5) << text;
+  }
+}
+
 }  // namespace hosel

@@ -84,6 +84,15 @@ TEST(BounceRoll, RunsOnASlope) {
   EXPECT_EQ(nearly.bounces, plain.bounces);
 }
 
+/// The nearer to the slope on which the hops keep a height, the more of them: some 270 down 3 deg.
+TEST(BounceRoll, BouncesDownASlopeUntilItStops) {
+  const auto down = [](double slope) { return models::run_out(landing(27, 40, 200), {}, {.slope = radians(-slope)}); };
+  const models::Run far = down(3);
+  EXPECT_GT(far.bounces, 200);
+  EXPECT_GT(far.total, down(2).total + 1);
+  EXPECT_THROW(down(3.5), std::invalid_argument);
+}
+
 TEST(BounceRoll, RefusesASlopeOnWhichNothingStops) {
   EXPECT_THROW(models::run_out(landing(27, 40, 200), {}, {.slope = -0.1}), std::invalid_argument);
 }

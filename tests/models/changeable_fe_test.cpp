@@ -11,6 +11,7 @@
 #include "golf/units.hpp"
 #include "models/calibration/ball_calibration.hpp"
 #include "models/club/swing.hpp"
+#include "models/parameters.hpp"
 #include "solvers/modes.hpp"
 
 namespace hosel::models {
@@ -150,6 +151,26 @@ TEST(ChangeableFe, ASmallShareOfTheShaftIsNearTheFreeHead) {
       base.launch(blow, {}).backspin(),
       0.7 *
           Impact(options).launch({.delivery = blow.delivery, .club = blow.club, .ball = {}, .contact = {}}).backspin());
+}
+
+/// What holds a point at rest goes with what holds one that slides: a fit may pass where the case's own was.
+TEST(ChangeableFe, StaticFrictionKeepsItsRatioToSliding) {
+  Options options;
+  Blow blow;
+  blow.contact.patch = {.coefficient = 0.30, .at_rest = StaticFriction{0.33, 1e-4}};
+  find_parameter("common_friction")->set(options, blow, 0.40);
+  EXPECT_EQ(blow.contact.patch.coefficient, 0.40);
+  EXPECT_NEAR(blow.contact.patch.at_rest->coefficient, 0.44, 1e-15);
+  EXPECT_TRUE(blow.contact.patch.faults().empty());
+  FeImpactOptions coarse;
+  coarse.resolve(Accuracy::look);
+  const ChangeableFe base(coarse, {}, {}, false);
+  blow.club.head = {.mass = 0.27, .cg = Vec3(-1e-3, 0, 0), .inertia = Vec3(2.8e-4, 1e-4, 2.9e-4).asDiagonal()};
+  blow.delivery = {.club_speed = 36, .dynamic_loft = radians(40)};
+  const double stated = base.launch(blow, {}).backspin();
+  blow.contact.patch = {.coefficient = 0.30, .at_rest = StaticFriction{0.33, 1e-4}};
+  blow.contact.friction = 0.40;
+  EXPECT_NEAR(base.launch(blow, {}).backspin(), stated, 1e-9 * stated);
 }
 
 }  // namespace

@@ -223,5 +223,18 @@ TEST(HertzMaw, TangentialForceReverses) {
   EXPECT_LT(least, -100);
 }
 
+/// A contact that gives far more one way across than the other: sliding never ends, and presses the surfaces apart less
+/// than it presses them together.
+TEST(StickSlip, SlidingThatNeverClosesJams) {
+  Blow blow = planar(0, 0);
+  blow.contact.friction = 0.45;
+  ImpulseProblem p = impulse_problem(blow);
+  p.contact.normal = Vec3::UnitX();
+  p.contact.approach = Vec3(10, 5, 0);
+  p.mobility << 1.2, -9, -0.5, -9, 100, 0, -0.5, 0, 1;
+  ASSERT_GT(p.mobility.determinant(), 0);
+  EXPECT_THROW(stick_slip_path(blow, p), std::invalid_argument);
+}
+
 }  // namespace
 }  // namespace hosel::models

@@ -119,5 +119,18 @@ TEST(Oblique, HardSphereSlidesAndGripsAsMeasured) {
   EXPECT_GT(worst, 0.005);  // no fit
 }
 
+/// A ball that does not leave the wall has a restitution below zero, and rebounds beyond the right angle.
+TEST(Oblique, AWallThatTheBallDoesNotLeaveReturnsLessThanNothing) {
+  Blow blow;
+  blow.club.head.mass = INFINITY;
+  blow.delivery = {.club_speed = 30, .club_path = radians(30)};
+  const double into = 30 * std::cos(radians(30)), along = 30 * std::sin(radians(30));
+  const WallBounce bounce = off_wall(blow, {.velocity = 0.9 * blow.delivery.velocity()});
+  EXPECT_NEAR(bounce.into, into, 1e-12);
+  EXPECT_NEAR(bounce.along, along, 1e-12);
+  EXPECT_NEAR(bounce.restitution(), -0.1, 1e-12);
+  EXPECT_NEAR(bounce.rebound_angle(), radians(150), 1e-12);  // it creeps on: a tenth of the way it came
+}
+
 }  // namespace
 }  // namespace hosel::models

@@ -311,5 +311,13 @@ TEST(Swing, HingeAndSpringJoints) {
   }
 }
 
+TEST(Swing, AClubThatNothingHoldsIsNotHeld) {
+  Swing forced(driver_club(), {}, {.kind = GripDrive::Kind::forced, .motion = motion(), .wrench = [](double) {
+                                     return fem::Wrench{Vec3::Zero(), Vec3::Zero()};
+                                   }});
+  EXPECT_THROW(forced.equilibrium(0), std::invalid_argument);
+  EXPECT_THROW(forced.hold(0, 0.1), std::invalid_argument);
+}
+
 }  // namespace
 }  // namespace hosel::models

@@ -51,7 +51,7 @@ TEST(Channels, TheErrorOfAnAngleIsTheShorterWayRound) {
     return hosel::Launch{.velocity = hosel::Vec3(60, 0, 5), .spin = -200 * hosel::Vec3(0, std::cos(a), std::sin(a))};
   };
   const auto table = hosel::post::launch_table({{.title = "m", .launch = tilted(179.5), .coarser = tilted(-179.5)}});
-  const auto row = std::ranges::find(table.rows, "spin_axis [deg]", [](const auto& r) { return r.front(); });
+  const auto row = std::ranges::find(table.rows, "spin axis [deg]", [](const auto& r) { return r.front(); });
   ASSERT_NE(row, table.rows.end());
   EXPECT_EQ(row->back(), "179.50 +-1.00");
 }
@@ -67,9 +67,20 @@ TEST(LaunchTable, StatesUpperBoundsAndZerosWithoutASign) {
     const auto row = std::ranges::find(table.rows, name, [](const auto& r) { return r.front(); });
     return row == table.rows.end() ? std::string("-") : row->back();
   };
-  EXPECT_EQ(said("ball_speed [m/s]"), "60.21 +-0.03");
+  EXPECT_EQ(said("ball speed [m/s]"), "60.21 +-0.03");
   EXPECT_EQ(said("riflespin [rpm]").substr(1), " +-1");
   EXPECT_EQ(said("e_t [-]"), "0.000");
+}
+
+/// One ball does not stop, and the others' totals are told all the same.
+TEST(LaunchTable, ARowIsThereWhereAnyColumnHasIt) {
+  const hosel::post::ShotFlight lands{}, rests{.flight = {}, .run = hosel::models::Run{.total = 200}};
+  const auto table = hosel::post::launch_table(
+      {{.title = "a", .launch = {}, .flight = lands}, {.title = "b", .launch = {}, .flight = rests}});
+  const auto row = std::ranges::find(table.rows, "total [yd]", [](const auto& r) { return r.front(); });
+  ASSERT_NE(row, table.rows.end());
+  EXPECT_EQ((*row)[1], "-");
+  EXPECT_EQ((*row)[2], "218.7");
 }
 
 }  // namespace

@@ -21,5 +21,16 @@ TEST(MovingBlow, APageTakesAtMostFourMegabytes) {
   EXPECT_EQ(nlohmann::json::parse(json).at("time_ms").size(), 1U);
 }
 
+/// Cells count points by 16 bits: a body of more is not drawn from other points.
+TEST(MovingBlow, AFaceOfMorePointsThanCellsCountIsRefused) {
+  MovingBlow blow;
+  constexpr int points = 65'540;
+  blow.bodies.push_back({.name = "face", .points = points, .grid = {}, .cells = {0, 1, 65'535}, .radius = {}});
+  blow.frames.push_back({.force = 1, .bodies = {{std::vector<float>(3 * points, 0.1F), {}, {}}}});
+  EXPECT_FALSE(json_for_viewer(blow).empty());
+  blow.bodies.front().cells.back() = 65'536;
+  EXPECT_TRUE(json_for_viewer(blow).empty());
+}
+
 }  // namespace
 }  // namespace hosel::post

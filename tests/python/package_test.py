@@ -98,6 +98,17 @@ class Launches(InFolder):
             for name, values in all_at_once.items():
                 self.assertAlmostEqual(values[i], float(one[name]), delta=1e-9 * (1 + abs(values[i])), msg=name)
 
+    def test_a_blow_off_the_face_is_told(self):
+        model = hosel.Model("driver-toe", "rigid-eccentric")
+        with warnings.catch_warnings(record=True) as told:
+            warnings.simplefilter("always")
+            model.launch(impact_toe_mm=[0, 20])
+            self.assertEqual(told, [])
+            model.launch(impact_toe_mm=[0, 20, 95])
+        self.assertEqual(len(told), 1)
+        self.assertIn("1 of 3 blows; the first is blow 2: the ball is struck off the face: 95 mm towards the toe",
+                      str(told[0].message))
+
     def test_the_model_is_the_commands(self):
         said = hosel.run("driver-toe", self.out, set=FAST).launches()["rigid-eccentric"]
         asked = hosel.Model("driver-toe", "rigid-eccentric").launch()
