@@ -1,4 +1,4 @@
-/// How the head arrives at the ball, at first contact. Signs and frames: README, "Frames".
+/// How the head arrives at the ball, at first contact. Signs and frames: docs/code.md.
 #pragma once
 
 #include "golf/vector.hpp"
