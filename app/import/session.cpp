@@ -12,6 +12,7 @@
 #include "app/reader.hpp"
 #include "loop/deviation.hpp"
 #include "models/flight/flight.hpp"
+#include "models/rigid/rigid_planar.hpp"
 #include "post/labels.hpp"
 #include "solvers/errors.hpp"
 
@@ -1043,17 +1044,17 @@ class Reading {
   /// recorded or the club's nominal one; 0 where there is none.
   double expected_smash() {
     const Understood *loft = find("dynamic_loft"), *clubs = find("club");
-    constexpr double ball_mass = 0.04593, restitution = 0.8;
     std::vector<double> ratios;
     for (std::size_t i = 0; i < out_.shots; ++i) {
       const NominalClub* club = d_.club(clubs ? clubs->cells[i] : club_);
       const auto recorded = loft ? plain_number(loft->cells[i]) : std::nullopt;
       if (!recorded && !club) continue;
       const double angle = recorded ? *recorded * split_unit(loft->name).unit->si : club->loft * si_of("deg");
-      const double mass = club ? club->head_mass : 0.25;
-      // Along the normal by restitution; along the face the ball rolls off, with 2/7 of the head's speed.
-      ratios.push_back(
-          std::hypot((1 + restitution) * mass / (mass + ball_mass) * std::cos(angle), 2.0 / 7 * std::sin(angle)));
+      if (!(std::abs(angle) < radians(80))) continue;  // told elsewhere
+      Blow blow;
+      blow.delivery = {.club_speed = 40, .dynamic_loft = angle};
+      blow.club.head.mass = club ? club->head_mass : 0.25;
+      ratios.push_back(models::RigidPlanar().launch(blow).ball_speed() / blow.delivery.club_speed);
     }
     return ratios.empty() ? 0 : loop::median(ratios);
   }

@@ -133,6 +133,7 @@ struct BlowQuantity {
   std::optional<Dimension> dimension;  ///< of the unit behind the name
   MaybeNumber (*value)(const StudyAnswer&);
   bool cause = false, followed = false;
+  bool of_face = false;  ///< what the club's face and head make of a strike of their own, whichever model answers
 };
 using Given = const StudyAnswer&;
 const std::array kBlowQuantities = {
@@ -155,20 +156,35 @@ const std::array kBlowQuantities = {
         "smash_factor", {}, [](Given a) { return MaybeNumber(a.launch.ball_speed() / a.blow.delivery.club_speed); }},
     BlowQuantity{"spin_over_rolling", {}, spin_over_rolling},
     BlowQuantity{"striking_mass_kg", {}, [](Given a) { return MaybeNumber(in_series(a, false).mass); }},
-    BlowQuantity{"face_restitution", {}, [](Given a) { return MaybeNumber(in_series(a, true).restitution); }},
+    BlowQuantity{"face_restitution",
+                 {},
+                 [](Given a) { return MaybeNumber(in_series(a, true).restitution); },
+                 false,
+                 false,
+                 true},
     BlowQuantity{"rigid_restitution", {}, [](Given a) { return MaybeNumber(in_series(a, false).restitution); }},
-    BlowQuantity{"face_speed_ratio", {}, [](Given a) { return MaybeNumber(in_series(a, true).speed_ratio); }},
+    BlowQuantity{"face_speed_ratio",
+                 {},
+                 [](Given a) { return MaybeNumber(in_series(a, true).speed_ratio); },
+                 false,
+                 false,
+                 true},
     BlowQuantity{"rigid_speed_ratio", {}, [](Given a) { return MaybeNumber(in_series(a, false).speed_ratio); }},
     BlowQuantity{"face_contact_time", Dimension::time,
-                 [](Given a) { return MaybeNumber(in_series(a, true).contact_time); }},
-    BlowQuantity{"face_energy", Dimension::energy, [](Given a) { return in_series(a, true).face_energy; }},
-    BlowQuantity{"characteristic_time", Dimension::time, [](Given a) { return MaybeNumber(pendulum(a).time); }},
+                 [](Given a) { return MaybeNumber(in_series(a, true).contact_time); }, false, false, true},
+    BlowQuantity{"face_energy", Dimension::energy, [](Given a) { return in_series(a, true).face_energy; }, false, false,
+                 true},
+    BlowQuantity{"characteristic_time", Dimension::time, [](Given a) { return MaybeNumber(pendulum(a).time); }, false,
+                 false, true},
     // By how much the sphere's contact at 1 m/s is longer, and the largest distance of a time from the straight line.
-    BlowQuantity{"pendulum_slope", Dimension::time, [](Given a) { return MaybeNumber(pendulum(a).slope); }},
-    BlowQuantity{"pendulum_departure", Dimension::time, [](Given a) { return MaybeNumber(pendulum(a).departure); }},
-    BlowQuantity{"restitution_off_rules_line", {}, [](Given a) { return MaybeNumber(off_rules_line(a)); }},
-    BlowQuantity{"give_to_ball_m_per_N", {}, [](Given a) { return give(a, false); }},
-    BlowQuantity{"give_to_pendulum_m_per_N", {}, [](Given a) { return give(a, true); }},
+    BlowQuantity{"pendulum_slope", Dimension::time, [](Given a) { return MaybeNumber(pendulum(a).slope); }, false,
+                 false, true},
+    BlowQuantity{"pendulum_departure", Dimension::time, [](Given a) { return MaybeNumber(pendulum(a).departure); },
+                 false, false, true},
+    BlowQuantity{
+        "restitution_off_rules_line", {}, [](Given a) { return MaybeNumber(off_rules_line(a)); }, false, false, true},
+    BlowQuantity{"give_to_ball_m_per_N", {}, [](Given a) { return give(a, false); }, false, false, true},
+    BlowQuantity{"give_to_pendulum_m_per_N", {}, [](Given a) { return give(a, true); }, false, false, true},
     BlowQuantity{"peak_stress", Dimension::pressure, [](Given a) { return a.face_stress; }, false, true},
     BlowQuantity{"largest_tangential_force", Dimension::force, [](Given a) { return extreme_force(a, 1); }},
     BlowQuantity{"least_tangential_force", Dimension::force, [](Given a) { return extreme_force(a, -1); }},
@@ -269,17 +285,12 @@ void doubt_solution(StudyAnswer& a, const std::string& model, const models::FeOu
     a.doubts.push_back({fmt::format("{}: {} is above {:g}", model, d.what, d.limit), d.value, d.sentence()});
 }
 
-/// What the club's face and head make of a strike of their own, whichever model answers.
-constexpr std::array<std::string_view, 10> kOfTheFace = {
-    "face_restitution",     "face_speed_ratio",        "face_contact_time",  "face_energy",
-    "characteristic_time",  "pendulum_slope",          "pendulum_departure", "restitution_off_rules_line",
-    "give_to_ball_m_per_N", "give_to_pendulum_m_per_N"};
-
 }  // namespace
 
 bool asks_for_the_face(const std::string& output) {
-  return std::ranges::any_of(kOfTheFace,
-                             [&](std::string_view q) { return output == q || split_unit(output).stem == q; });
+  return std::ranges::any_of(kBlowQuantities, [&](const BlowQuantity& q) {
+    return q.of_face && (output == q.name || split_unit(output).stem == q.name);
+  });
 }
 
 StudyBlow read_study_blow(Table root, bool of_face) {

@@ -217,21 +217,16 @@ TEST(Doubts, AStudyOfACaseTellsWhatTheCaseDoubts) {
   EXPECT_EQ(content(dir / "out/points.csv").find("doubts"), std::string::npos);
 }
 
-TEST(Doubts, ABallThatMissesItsTargetIsNotOffered) {
-  const fs::path dir = fresh_directory("doubts_ball");
-  write(dir / "case/case.toml", R"(kind = "calibrate-ball"
+/// A ball of one layer and one branch to be calibrated, and what it should do.
+const std::string kOneBranch = R"(kind = "calibrate-ball"
 [[ball.layers]]
 law = "neo-hooke"
 c10_MPa = 12
 bulk_MPa = 1000
 branch_moduli_MPa = [50]
 branch_times_ms = [0.01]
-[mesh]
-sector = 1
-rings = 1
-[time]
-steps_per_contact = 60
-[[free]]
+)";
+const std::string kItsTarget = R"([[free]]
 what = "branch-moduli"
 [target]
 speeds_mps = [30]
@@ -241,7 +236,16 @@ restitution_sigma = 0.01
 contact_speed_mps = 30
 contact_time_ms = 0.5
 contact_time_sigma_ms = 0.2
-)");
+)";
+
+TEST(Doubts, ABallThatMissesItsTargetIsNotOffered) {
+  const fs::path dir = fresh_directory("doubts_ball");
+  write(dir / "case/case.toml", kOneBranch + R"([mesh]
+sector = 1
+rings = 1
+[time]
+steps_per_contact = 60
+)" + kItsTarget);
   const auto run = [&](const std::string& set) {
     return command("run " + (dir / "case").string() + " --force --out " + (dir / "out").string() + set);
   };
@@ -264,14 +268,7 @@ contact_time_sigma_ms = 0.2
 /// A shot was seen at the loft that meets its launch angle, not where the search for it began.
 TEST(Doubts, AnOfferedBallSawTheLoftsThatWereFound) {
   const fs::path dir = fresh_directory("doubts_seen");
-  write(dir / "case/case.toml", R"(kind = "calibrate-ball"
-[[ball.layers]]
-law = "neo-hooke"
-c10_MPa = 12
-bulk_MPa = 1000
-branch_moduli_MPa = [50]
-branch_times_ms = [0.01]
-[contact]
+  write(dir / "case/case.toml", kOneBranch + R"([contact]
 face_friction = 0.3
 [mesh]
 sector = 1
@@ -279,17 +276,7 @@ rings = 1
 harmonics = 2
 [time]
 steps_per_contact = 40
-[[free]]
-what = "branch-moduli"
-[target]
-speeds_mps = [30]
-restitution = 0.75
-restitution_slope_s_per_m = 0
-restitution_sigma = 0.01
-contact_speed_mps = 30
-contact_time_ms = 0.5
-contact_time_sigma_ms = 0.2
-[[shots]]
+)" + kItsTarget + R"([[shots]]
 name = "iron"
 launch_angle_deg = 20
 spin_rate_rpm = 6000
