@@ -80,8 +80,7 @@ std::vector<const Parametrisation*> steady(const Study& study, const Fit& f) {
     const Parametrisation* form = f.model.forms[k];
     const auto count = Eigen::Index(form->parameters.size());
     bool inside = true;
-    for (Eigen::Index j = 0; j < count; ++j)
-      inside = inside && !form->parameters[std::size_t(j)].at_edge(f.p[first + j]);
+    for (Eigen::Index j = 0; j < count; ++j) inside = inside && !form->parameters[j].at_edge(f.p[first + j]);
     if (k >= study.base.size() && inside) {
       std::vector<Size> looks = {train.size(first, count, all), holdout.size(first, count, all)};
       for (const std::vector<bool>& in : subsets)
@@ -111,14 +110,10 @@ std::optional<Candidate> keep(const Study& study, const Fit& start) {
     const std::vector<const Parametrisation*> passed = steady(study, out.fit);
     if (passed.empty()) return {};
     if (study.base.size() + passed.size() == out.fit.model.forms.size()) break;
-    Model model{study.base};
-    std::vector<double> p;
-    out.fit.model.each(out.fit.p.data(), [&](const Parametrisation& form, std::span<const double> own) {
-      const bool passes = std::ranges::count(passed, &form) > 0;
-      if (passes) model = model.with(&form);
-      if (passes || std::ranges::count(study.base, &form)) p.insert(p.end(), own.begin(), own.end());
+    const Fit left = part_of(out.fit, [&](const Parametrisation& form) {
+      return std::ranges::count(passed, &form) + std::ranges::count(study.base, &form) > 0;
     });
-    out.fit = fit(problem, Part::train, model, {as_vector(p)}, 1, true);
+    out.fit = fit(problem, Part::train, left.model, {left.p}, 1, true);
   } while (true);
   const Fit& base = study.selection.base;
   if (!(deviance(problem, Part::holdout, out.fit) < deviance(problem, Part::holdout, base) - study.rules.gain))

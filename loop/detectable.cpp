@@ -34,7 +34,7 @@ std::vector<Detectable> minimum_detectable(const Problem& problem, const Fit& ba
     };
     double end = par.max >= -par.min ? par.max : par.min, most = signal(end);
     for (int k = 0; k < 20 && std::isnan(most); ++k) most = signal(end *= 0.5);  // not all that is plausible can happen
-    if (!(most > 1e-3)) return {};
+    if (!(most > kNothing)) return {};
     Detectable out{f->effect, par.name, par.unit, kNaN};
     if (most < wanted) return out;
     std::uintmax_t evaluations = 60;

@@ -15,6 +15,18 @@ namespace hosel::loop {
 inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// Relative, or in the unit at hand where nothing is that small: what differs by less is the same.
 inline constexpr double kRoundOff = 1e-9;
+/// Of the number at hand, or in its unit: what arithmetic alone leaves of it.
+inline constexpr double kLastBits = 1e-12;
+/// Of the largest, or in noise units: what is fainter is the round-off of what made it.
+inline constexpr double kFaint = 1e-6;
+/// Of a size, or in noise units: so little of it is as good as nothing.
+inline constexpr double kNothing = 1e-3;
+/// Of a whole: so much of it is nearly all.
+inline constexpr double kNearlyAll = 0.8;
+/// Robust deviations: farther off is one reading in some 10^10 of a normal scatter.
+inline constexpr double kFar = 7;
+/// Robust deviations beyond which a value must not count as it stands.
+inline constexpr double kFence = 4;
 /// In place of zero where a number is divided by or its logarithm taken.
 inline constexpr double kTiny = 1e-300;
 
@@ -39,7 +51,7 @@ inline double at_share(const std::vector<double>& rising, double share) {
 inline bool varies(double width, double middle) { return width > kRoundOff * (1 + std::abs(middle)); }
 
 /// Minus the logarithm of the standard normal density at zero.
-inline const double kLogRootTwoPi = 0.5 * std::log(2 * std::numbers::pi);
+inline const double kLogRootTwoPi = std::log(2 * std::numbers::pi) / 2;
 
 /// Places of `n` things by rising `of` a place; equals in their order.
 template <class Index = int>

@@ -47,7 +47,7 @@ struct Parameter {
 
   /// Whether it stands at an end of its range that is not zero.
   bool at_edge(double x) const {
-    const double margin = 1e-3 * (max - min);
+    const double margin = kNothing * (max - min);
     return (max > 0 && max - x < margin) || (min < 0 && x - min < margin);
   }
 
@@ -57,6 +57,8 @@ struct Parameter {
     return out;
   }
 };
+
+using Sizes = std::span<const double>;  ///< of a form's parameters [SI]
 
 /// One functional form of an effect. The hooks on a shot are applied in this order; all may be empty.
 struct Parametrisation {
@@ -72,17 +74,17 @@ struct Parametrisation {
   /// Nothing happens below some size: the gradient at zero vanishes, and the starts are probes that stand for it.
   bool threshold = false;
   /// Shot: changes the blow before the model answers.
-  std::function<void(std::span<const double>, Shot&)> before;
+  std::function<void(Sizes, Shot&)> before;
   /// Shot: changes the model's answer (the blow as the other hooks left it).
-  std::function<void(std::span<const double>, const Shot&, Launch&)> after;
+  std::function<void(Sizes, const Shot&, Launch&)> after;
   /// Shot: changes what the instrument shows of one output [SI].
-  std::function<double(std::span<const double>, const Shot&, Output, double)> reading;
+  std::function<double(Sizes, const Shot&, Output, double)> reading;
   /// Shot: changes the launch that was seen, where the base is the flight alone.
-  std::function<void(std::span<const double>, Launch&)> seen;
+  std::function<void(Sizes, Launch&)> seen;
   /// Shot: changes law, air or wind of the flight.
-  std::function<void(std::span<const double>, models::FlightConditions&)> flight;
+  std::function<void(Sizes, models::FlightConditions&)> flight;
   /// Club test: changes club, clamp or sensors.
-  std::function<void(std::span<const double>, TestSetup&)> setup;
+  std::function<void(Sizes, TestSetup&)> setup;
 };
 
 /// A form `of_order` that takes shots for as far in the session as `place` says of where they are: the same on every

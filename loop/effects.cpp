@@ -108,13 +108,13 @@ Parametrisation placed_otherwise(const Parametrisation& form, std::function<doub
   Parametrisation other = form;
   other.of_order = false;
   if (form.before)
-    other.before = [before = form.before, place](std::span<const double> p, Shot& s) {
+    other.before = [before = form.before, place](Sizes p, Shot& s) {
       const double own = std::exchange(s.order, place(s.order));
       before(p, s);
       s.order = own;
     };
   if (form.reading)
-    other.reading = [reading = form.reading, place](std::span<const double> p, const Shot& s, Output of, double value) {
+    other.reading = [reading = form.reading, place](Sizes p, const Shot& s, Output of, double value) {
       Shot at = s;
       at.order = place(s.order);
       return reading(p, at, of, value);

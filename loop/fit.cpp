@@ -154,7 +154,7 @@ Fit fit(const Problem& problem, Part part, const Model& model, std::vector<Eigen
     for (solvers::Minimum& m : reached) {
       const bool known = std::ranges::any_of(at, [&](const solvers::Minimum& other) {
         const Eigen::VectorXd &a = m.parameters, &b = other.parameters;
-        return (a - b).norm() < 1e-3 * (a.norm() + b.norm());
+        return (a - b).norm() < kNothing * (a.norm() + b.norm());
       });
       if (!known && at.size() < beam) at.push_back(std::move(m));
     }
@@ -203,9 +203,9 @@ Eigen::MatrixXd covariance(const Problem& problem, Part part, const Fit& f) {
   scores += prior.transpose() * prior;
   bool known = true;
   for (int c = 0; c < problem.width(); ++c) known = known && problem.channel(c).trusted();
-  // Below a thousandth of a noise unit per unit of scale nothing is known along a direction.
+  // So few noise units per unit of scale tell nothing along a direction.
   const Eigen::VectorXd scale = scales(f.model);
-  return scale.asDiagonal() * solvers::covariance(J, 1e-3, known ? nullptr : &scores) * scale.asDiagonal();
+  return scale.asDiagonal() * solvers::covariance(J, kNothing, known ? nullptr : &scores) * scale.asDiagonal();
 }
 
 Eigen::MatrixXd orthonormal(const Eigen::MatrixXd& columns) {

@@ -31,6 +31,19 @@ double deviance(const Problem& problem, Part part, const Fit& fit);
 /// A fit with one more form, its parameters zero: where a look beside the fit begins.
 Fit beside(const Fit& fit, const Parametrisation* more);
 
+/// Those forms of a fit that `keep` wants, where they stand in it.
+Fit part_of(const Fit& fit, const auto& keep) {
+  Fit out;
+  std::vector<double> p;
+  fit.model.each(fit.p.data(), [&](const Parametrisation& form, Sizes own) {
+    if (!keep(form)) return;
+    out.model.forms.push_back(&form);
+    p.insert(p.end(), own.begin(), own.end());
+  });
+  out.p = Eigen::Map<const Eigen::VectorXd>(p.data(), Eigen::Index(p.size()));
+  return out;
+}
+
 /// What is known of a fit's parameters beside the data, as a part of its deviance.
 double known(const Fit& fit);
 

@@ -18,7 +18,7 @@ Likeness likeness(const std::vector<EffectColumn>& columns, const Eigen::MatrixX
     const Eigen::VectorXd left = c.whitened - Q * (Q.transpose() * c.whitened);
     a.signal = left.norm();
     a.absorbed = whole > 0 ? 1 - a.signal * a.signal / (whole * whole) : 0;
-    if (a.signal > 1e-6 && a.signal > 1e-6 * whole) {
+    if (a.signal > kFaint && a.signal > kFaint * whole) {
       seen.push_back(out.absorption.size());
       unit.push_back(left / a.signal);
     }
@@ -27,18 +27,18 @@ Likeness likeness(const std::vector<EffectColumn>& columns, const Eigen::MatrixX
   const auto n = std::ptrdiff_t(unit.size());
   if (n < 2) return out;
   Eigen::MatrixXd U(unit.front().size(), n);
-  for (std::ptrdiff_t k = 0; k < n; ++k) U.col(k) = unit[std::size_t(k)];
+  for (std::ptrdiff_t k = 0; k < n; ++k) U.col(k) = unit[k];
   const Eigen::MatrixXd G = U.transpose() * U;
   for (std::ptrdiff_t k = 0; k < n; ++k)
     for (std::ptrdiff_t j = 0; j < n; ++j) {
-      Absorption& a = out.absorption[seen[std::size_t(k)]];
-      const Absorption& b = out.absorption[seen[std::size_t(j)]];
+      Absorption& a = out.absorption[seen[k]];
+      const Absorption& b = out.absorption[seen[j]];
       if (a.effect == b.effect || std::abs(G(k, j)) <= std::abs(a.likeness)) continue;
       a.likeness = G(k, j);
       a.nearest = b.effect;
     }
   const Eigen::JacobiSVD<Eigen::MatrixXd> svd(G, Eigen::ComputeFullV);
-  for (std::ptrdiff_t k = n - 1; k >= 0 && out.null_vectors.size() < 4; --k) {
+  for (std::ptrdiff_t k = n - 1; k >= 0 && out.null_vectors.size() < kMostTold; --k) {
     NullVector v{.singular = std::sqrt(std::max(0.0, svd.singularValues()[k]))};
     if (v.singular > 0.1) break;
     Eigen::VectorXd w = svd.matrixV().col(k);
@@ -49,7 +49,7 @@ Likeness likeness(const std::vector<EffectColumn>& columns, const Eigen::MatrixX
     for (std::ptrdiff_t j = 0; j < n; ++j)
       if (std::abs(w[j]) > 0.15) order.push_back(j);
     std::ranges::stable_sort(order, std::ranges::greater{}, [&](std::ptrdiff_t j) { return std::abs(w[j]); });
-    for (const std::ptrdiff_t j : order) v.weights.emplace_back(out.absorption[seen[std::size_t(j)]].effect, w[j]);
+    for (const std::ptrdiff_t j : order) v.weights.emplace_back(out.absorption[seen[j]].effect, w[j]);
     out.null_vectors.push_back(std::move(v));
   }
   return out;

@@ -77,7 +77,7 @@ std::string history(const LoopResult& r, std::size_t channel, const Shots& table
   double y0 = kInfinity, y1 = -y0;
   bool open = false;
   for (const UsedRow& u : r.rows) {
-    if (record->text[std::size_t(u.row)] != name) continue;
+    if (record->text[u.row] != name) continue;
     const double t = time->native(std::size_t(u.row)), y = u.measured[channel];
     if (u.holdout && !open) held.emplace_back(t, t);
     if (u.holdout) held.back().second = t;
@@ -131,7 +131,7 @@ std::string without_name(const LoopResult& r) {
       "that goes with that column<th>largest<th>there</tr>";
   for (const Remainder::Place& p : r.remainder->places)
     s += fmt::format("<tr><td>{}<td>{}<td class='l'>{}<td>{:.0f} %<td>{}<td>{}</tr>",
-                     escape_html(post::label(r.channel_names[std::size_t(p.channel)])), number(p.size),
+                     escape_html(post::label(r.channel_names[p.channel])), number(p.size),
                      p.share < 0.005 ? "no column: nearly a constant" : escape_html(post::label(p.along)),
                      100 * p.share, number(p.largest), number(p.at));
   return s + "</table></div>" +
@@ -264,7 +264,7 @@ std::string page(const LoopResult& r, const Shots& table) {
          "style='background:var(--band)'></i>held out</small></p>";
     std::vector<std::string> names;
     for (const std::string& n : table.find("record")->text)
-      if (std::ranges::find(names, n) == names.end() && names.size() < 4) names.push_back(n);
+      if (std::ranges::find(names, n) == names.end() && names.size() < kMostTold) names.push_back(n);
     for (const std::string& n : names)
       for (std::size_t c = 0; c < r.channels.size(); ++c)
         s += "<figure>" + history(r, c, table, n) +
@@ -366,14 +366,15 @@ std::string page(const LoopResult& r, const Shots& table) {
         "<h2>Flagged {}</h2><div class='scroll'><table><tr><th>{}<th class='l'>column<th "
         "class='l'>reason<th>finding</tr>",
         thing, records ? "sample" : "shot");
-    for (std::size_t i = 0; i < std::min<std::size_t>(r.flagged.size(), 200); ++i)
+    constexpr std::size_t most = 200;
+    for (std::size_t i = 0; i < std::min(r.flagged.size(), most); ++i)
       s += fmt::format("<tr><td>{}<td class='l'>{}<td class='l'>{}<td>{}</tr>", escape_html(r.flagged[i].id),
                        escape_html(r.flagged[i].column), escape_html(r.flagged[i].reason), r.flagged[i].finding);
     s += "</table></div>" + gloss(
                                 "Flagged: contradicts the other rows and is left out of every fit. Finding: rows with "
                                 "one cause have one number.");
-    if (r.flagged.size() > 200)
-      s += fmt::format("<p><small>and {} more, in report.json</small></p>", r.flagged.size() - 200);
+    if (r.flagged.size() > most)
+      s += fmt::format("<p><small>and {} more, in report.json</small></p>", r.flagged.size() - most);
   }
   s += "<h2>What to measure next</h2><p>" + escape_html(r.next.text) + ".</p>";
   if (!r.next.shots.empty()) {

@@ -27,7 +27,7 @@ struct Channel {
   std::string name;                ///< the header
   double si = 1;                   ///< one of the header's unit in SI
   double noise = 0;                ///< standard deviation of one reading, header's unit
-  std::optional<double> declared;  ///< what the case says of it
+  std::optional<double> declared;  ///< what the case says of it, with the rounding of its numbers
   double resolution = 0;           ///< recording step, header's unit
   bool refuted = false;            ///< the data's own scatter contradicts what is declared
   bool repeated = false;           ///< what stands as declared is the scatter of rows of which a reading is the mean
@@ -54,7 +54,7 @@ struct Model {
   template <class Act>
   void each(const double* p, Act&& act) const {
     for (const Parametrisation* f : forms) {
-      act(*f, std::span<const double>(p, f->parameters.size()));
+      act(*f, Sizes(p, f->parameters.size()));
       p += f->parameters.size();
     }
   }
@@ -219,7 +219,8 @@ class Problem {
   virtual std::vector<GroupSpread> between_groups(const Fit& /*fit*/) const { return {}; }
   /// Where it sits, the plainest first.
   virtual std::vector<Location> places(const Selection& selection) const = 0;
-  /// What scatter alone does not do, where the scatter is not the declared: a shape, a mixture.
+  /// What scatter alone does not do, where the scatter is not the declared: a shape, a mixture, unknowns beyond their
+  /// declared size.
   virtual std::vector<Location> shapes(const Selection& selection) const;
   /// A sentence where more rows lie far off than the declared noise allows, and in no one column: its tails are
   /// heavier.

@@ -13,205 +13,180 @@
 #include "post/labels.hpp"
 
 namespace hosel::loop {
-namespace {
 
 using nlohmann::json;
 
-/// Numbers that are none (a column without holdout rows) are null in JSON. Nine digits: what is beyond them is
-/// round-off, and files stay the same on any number of threads.
-json value(double x) {
-  if (!std::isfinite(x)) return nullptr;
-  if (std::abs(x) < kTiny) return 0.0;
-  return std::stod(fmt::format("{:.9g}", x));
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Errors, train_rmse, holdout_rmse, holdout_bias)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(DerivedColumn, column, from, formula, residual_sd, recording_resolution, rows, share)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(WrongColumn, column, finding, text)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(GroupSpread, along, of, unit, groups, sd, low, high, p)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Detectable, effect, parameter, value, unit)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Location, channel, regressor, detail)
+
+namespace {
+
+/// Numbers that are none (a column without holdout rows) are null. Nine digits: what is beyond them is round-off, and
+/// files stay the same on any number of threads.
+void nine_digits(json& j) {
+  if (j.is_structured())
+    for (json& x : j) nine_digits(x);
+  if (!j.is_number_float()) return;
+  const double x = j.get<double>();
+  j = !std::isfinite(x) ? json() : json(std::abs(x) < kTiny ? 0.0 : std::stod(fmt::format("{:.9g}", x)));
 }
 
-json errors(const Errors& e) {
-  return {{"train_rmse", value(e.train_rmse)},
-          {"holdout_rmse", value(e.holdout_rmse)},
-          {"holdout_bias", value(e.holdout_bias)}};
+/// What `of` makes of each.
+json each(const auto& all, const auto& of) {
+  json out = json::array();
+  for (const auto& x : all) out.push_back(of(x));
+  return out;
 }
 
 /// Of a fit, with the standard deviations (SI) that `sd` gives by their numbers.
 json parameters(const Fit& fit, const auto& sd) {
-  json out = json::array();
-  const auto of = fit.model.parameters();
-  for (std::size_t k = 0; k < of.size(); ++k)
-    out.push_back({{"name", of[k]->name},
-                   {"value", value(fit.p[std::ptrdiff_t(k)] / of[k]->si)},
-                   {"sd", value(sd(k) / of[k]->si)},
-                   {"unit", of[k]->unit}});
-  return out;
+  std::size_t k = 0;
+  return each(fit.model.parameters(), [&](const Parameter* q) {
+    const double si = q->si, value = fit.p[std::ptrdiff_t(k)] / si;
+    return json{{"name", q->name}, {"value", value}, {"sd", sd(k++) / si}, {"unit", q->unit}};
+  });
+}
+
+json to_json(const Balance& b) {
+  return {{"contact", b.contact},
+          {"contact_freedom", b.contact_freedom},
+          {"inertia", b.inertia},
+          {"inertia_freedom", b.inertia_freedom},
+          {"inertia_share", b.inertia_share()}};
+}
+
+json to_json(const Corrected& corrected, const std::vector<ChannelResult>& channels) {
+  std::size_t k = 0;
+  const json of_channels = each(channels, [&](const ChannelResult& c) {
+    const Errors before = errors(corrected.rows, &UsedRow::before, k),
+                 after = errors(corrected.rows, &UsedRow::after, k);
+    ++k;
+    return json{{"name", c.name},
+                {"before_rmse", before.holdout_rmse},
+                {"after_rmse", after.holdout_rmse},
+                {"rows", before.holdout}};
+  });
+  const json by_shot = each(corrected.rows, [&](const UsedRow& row) {  // model minus measured
+    json shot{{"shot", row.id}};
+    for (std::size_t c = 0; c < channels.size(); ++c)
+      shot[channels[c].name] = {{"before", row.before[c]}, {"after", row.after[c]}};
+    return shot;
+  });
+  return {{"case", corrected.shots.empty() ? json() : json("corrected/case.toml")},
+          {"channels", of_channels},
+          {"shots", by_shot},
+          {"not_in_the_case", corrected.instrument}};
 }
 
 }  // namespace
 
 json to_json(const LoopResult& r) {
-  json out;
-  out["title"] = r.title;
-  out["base"] = r.base;
-  out["rows"] = {{"read", r.read}, {"used", r.used}, {"train", r.train}, {"holdout", r.holdout}};
-  out["unused_rows"] = r.unused;
-  out["seed"] = r.seed;
-  out["flagged_rows"] = json::array();
-  for (const auto& f : r.flagged) {
-    json id = f.id;
+  json out = {{"title", r.title},
+              {"base", r.base},
+              {"rows", {{"read", r.read}, {"used", r.used}, {"train", r.train}, {"holdout", r.holdout}}},
+              {"unused_rows", r.unused},
+              {"seed", r.seed},
+              {"derived_columns", r.derived},
+              {"columns", r.columns},
+              {"groups", r.groups},
+              {"base_holdout_score", r.base_score},
+              {"adopted", r.adopted},
+              {"ties", r.ties},
+              {"verdict", name(r.verdict)},
+              {"sentence", sentence(r)},
+              {"minimum_detectable", r.minimum_detectable},
+              {"unexplained", r.unexplained},
+              {"notes", r.notes}};
+  out["flagged_rows"] = each(r.flagged, [](const Flag& f) {
     // A shot number is a number, whatever the file calls a shot else is text.
-    if (!f.id.empty() && f.id.size() < 10 && f.id.find_first_not_of("0123456789") == std::string::npos)
-      id = std::stoi(f.id);
-    out["flagged_rows"].push_back({{"shot", id}, {"column", f.column}, {"reason", f.reason}, {"finding", f.finding}});
-  }
-  out["derived_columns"] = json::array();
-  for (const DerivedColumn& d : r.derived)
-    out["derived_columns"].push_back({{"column", d.column},
-                                      {"from", d.from},
-                                      {"formula", d.formula},
-                                      {"residual_sd", value(d.residual_sd)},
-                                      {"recording_resolution", value(d.recording_resolution)},
-                                      {"rows", d.rows},
-                                      {"share", value(d.share)}});
-  out["columns"] = json::array();
-  for (const WrongColumn& c : r.columns)
-    out["columns"].push_back({{"column", c.column}, {"finding", c.finding}, {"text", c.text}});
-  out["channels"] = json::array();
-  for (const ChannelResult& c : r.channels)
-    out["channels"].push_back({{"name", c.name},
-                               {"noise_sd", value(c.noise)},
-                               {"noise_source", c.noise_source == "declared" ? "declared" : "estimated"},
-                               {"noise_from_repeats", c.noise_source == "repeats"},
-                               {"scatter_over_noise", value(c.scatter)},
-                               {"expected_holdout_rmse", value(c.expected)},
-                               {"before", errors(c.before)},
-                               {"after", errors(c.after)},
-                               {"with_remainder", errors(c.with_remainder)}});
-  out["functions"] = json::array();
-  for (const Mechanism& m : r.functions)
-    out["functions"].push_back(
-        {{"along", m.along}, {"through", m.acts}, {"step", m.step}, {"is", m.names}, {"ahead", value(-m.criterion)}});
-  out["remainder"] = json::array();
-  if (r.remainder)
-    for (const Remainder::Place& p : r.remainder->places)
-      out["remainder"].push_back({{"channel", r.channel_names[std::size_t(p.channel)]},
-                                  {"rms", value(p.size)},
-                                  {"along", p.along},
-                                  {"share", value(p.share)},
-                                  {"largest", value(p.largest)},
-                                  {"at", value(p.at)}});
-  out["remainder_fall"] = r.remainder ? value(r.remainder->fall()) : json(nullptr);
-  out["groups"] = json::array();
-  for (const GroupSpread& g : r.groups)
-    out["groups"].push_back({{"along", g.along},
-                             {"of", g.of},
-                             {"unit", g.unit},
-                             {"groups", g.groups},
-                             {"sd", value(g.sd)},
-                             {"low", value(g.low)},
-                             {"high", value(g.high)},
-                             {"p", value(g.p)}});
+    const bool number = !f.id.empty() && f.id.size() < 10 && f.id.find_first_not_of("0123456789") == std::string::npos;
+    return json{{"shot", number ? json(std::stoi(f.id)) : json(f.id)},
+                {"column", f.column},
+                {"reason", f.reason},
+                {"finding", f.finding}};
+  });
+  out["channels"] = each(r.channels, [](const ChannelResult& c) {
+    return json{{"name", c.name},
+                {"noise_sd", c.noise},
+                {"noise_source", c.noise_source == "declared" ? "declared" : "estimated"},
+                {"noise_from_repeats", c.noise_source == "repeats"},
+                {"scatter_over_noise", c.scatter},
+                {"expected_holdout_rmse", c.expected},
+                {"before", c.before},
+                {"after", c.after},
+                {"with_remainder", c.with_remainder}};
+  });
+  out["functions"] = each(r.functions, [](const Mechanism& m) {
+    return json{{"along", m.along}, {"through", m.acts}, {"step", m.step}, {"is", m.names}, {"ahead", -m.criterion}};
+  });
+  out["remainder"] = each(r.remainder ? r.remainder->places : std::vector<Remainder::Place>{}, [&](const auto& p) {
+    return json{{"channel", r.channel_names[p.channel]},
+                {"rms", p.size},
+                {"along", p.along},
+                {"share", p.share},
+                {"largest", p.largest},
+                {"at", p.at}};
+  });
+  out["remainder_fall"] = r.remainder ? json(r.remainder->fall()) : json();
   out["structure"] = json::array();
   const Selection& s = r.selection;
-  int shown = 0;
   for (const Finding& f : s.before.findings) {
-    if (shown >= 20 || f.channel < 0) continue;
-    if (f.p_adjusted > kTold && std::abs(f.signal) < 4.5) continue;
-    json e;
-    e["channel"] = r.channel_names[std::size_t(f.channel)];
-    e["regressor"] = f.regressor;
+    if (out["structure"].size() >= 20 || f.channel < 0 || (f.p_adjusted > kTold && std::abs(f.signal) < 4.5)) continue;
     // Neighbours are products: no noise units.
-    e["statistic"] = f.kind == "neighbours" ? fmt::format("{}: {:+.2f}", f.what(), f.statistic)
-                                            : fmt::format("{}: {:+.2f} noise units", f.what(), f.signal);
-    e["p_adjusted"] = value(f.p_adjusted);
-    out["structure"].push_back(e);
-    ++shown;
+    const bool product = f.kind == "neighbours";
+    out["structure"].push_back({{"channel", r.channel_names[f.channel]},
+                                {"regressor", f.regressor},
+                                {"statistic", fmt::format("{}: {:+.2f}{}", f.what(), product ? f.statistic : f.signal,
+                                                          product ? "" : " noise units")},
+                                {"p_adjusted", f.p_adjusted}});
   }
-  out["remaining"] = {{"p", value(s.after.p)},
-                      {"largest", s.after.findings.empty() ? json(nullptr) : value(s.after.findings.front().signal)}};
-  out["base_holdout_score"] = value(r.base_score);
-  out["candidates"] = json::array();
+  out["remaining"] = {{"p", s.after.p},
+                      {"largest", s.after.findings.empty() ? json() : json(s.after.findings.front().signal)}};
   int rank = 0;
-  for (const ScoredCandidate& c : r.candidates) {
-    json e;
-    e["effects"] = c.candidate.effects;
-    e["parameters"] = parameters(c.candidate.fit, [&](std::size_t k) { return c.sd[k]; });
-    std::vector<std::string> forms;
-    for (const Parametrisation* f : c.candidate.fit.model.forms) forms.push_back(f->effect + ": " + f->what);
-    e["forms"] = forms;
-    e["deviance_fall"] = value(s.base.deviance - c.candidate.fit.deviance);
-    e["at_bound"] = c.candidate.fit.at_bound;
-    e["holdout_score"] = value(c.holdout_score);
-    e["rank"] = ++rank;
-    out["candidates"].push_back(e);
-  }
+  out["candidates"] = each(r.candidates, [&](const ScoredCandidate& c) {
+    const Fit& f = c.candidate.fit;
+    return json{{"effects", c.candidate.effects},
+                {"parameters", parameters(f, [&](std::size_t k) { return c.sd[k]; })},
+                {"forms", each(f.model.forms, [](const Parametrisation* q) { return q->effect + ": " + q->what; })},
+                {"deviance_fall", s.base.deviance - f.deviance},
+                {"at_bound", f.at_bound},
+                {"holdout_score", c.holdout_score},
+                {"rank", ++rank}};
+  });
   if (const Fit& after = s.chosen; !(r.adopted.empty() && r.ties.empty())) {  // of all training rows
     const auto sd = [&](std::size_t k) { return std::sqrt(r.covariance(std::ptrdiff_t(k), std::ptrdiff_t(k))); };
     out["chosen"] = {{"effects", after.model.effects()}, {"parameters", parameters(after, sd)}};
   }
-  out["adopted"] = r.adopted;
-  out["ties"] = r.ties;
-  out["verdict"] = std::string(name(r.verdict));
-  out["sentence"] = sentence(r);
-  out["minimum_detectable"] = json::array();
-  for (const Detectable& d : r.minimum_detectable)
-    out["minimum_detectable"].push_back(
-        {{"effect", d.effect}, {"parameter", d.parameter}, {"value", value(d.value)}, {"unit", d.unit}});
-  out["unexplained"] = json::array();
-  for (const Location& l : r.unexplained)
-    out["unexplained"].push_back({{"channel", l.channel}, {"regressor", l.regressor}, {"detail", l.detail}});
-  json shots = json::array();
-  for (const DesignedShot& d : r.next.shots) {
+  const json shots = each(r.next.shots, [](const DesignedShot& d) {
     json e;
-    for (const auto& [header, x] : d) e[header] = value(std::stod(fmt::format("{:.4g}", x)));
-    shots.push_back(e);
-  }
+    for (const auto& [header, x] : d) e[header] = std::stod(fmt::format("{:.4g}", x));
+    return e;
+  });
   out["next_experiment"] = {
-      {"text", r.next.text}, {"shots", shots}, {"sensor", r.next.sensor ? json(*r.next.sensor) : json(nullptr)}};
-  out["without_doubted_inputs"] = json::array();
-  for (const auto& [column, adopted] : r.without)
-    out["without_doubted_inputs"].push_back({{"column", column}, {"adopted", adopted}});
-  out["absorption"] = json::array();
-  for (const Absorption& a : r.likeness.absorption)
-    out["absorption"].push_back({{"effect", a.effect},
-                                 {"parameter", a.parameter},
-                                 {"absorbed", value(a.absorbed)},
-                                 {"nearest", a.nearest},
-                                 {"correlation", value(a.likeness)}});
-  out["null_vectors"] = json::array();
-  for (const NullVector& v : r.likeness.null_vectors) {
+      {"text", r.next.text}, {"shots", shots}, {"sensor", r.next.sensor ? json(*r.next.sensor) : json()}};
+  out["without_doubted_inputs"] = each(r.without, [](const auto& w) {
+    return json{{"column", w.first}, {"adopted", w.second}};
+  });
+  out["absorption"] = each(r.likeness.absorption, [](const Absorption& a) {
+    return json{{"effect", a.effect},
+                {"parameter", a.parameter},
+                {"absorbed", a.absorbed},
+                {"nearest", a.nearest},
+                {"correlation", a.likeness}};
+  });
+  out["null_vectors"] = each(r.likeness.null_vectors, [](const NullVector& v) {
     json weights = json::object();
-    for (const auto& [effect, weight] : v.weights) weights[effect] = value(weight);
-    out["null_vectors"].push_back({{"singular_value", value(v.singular)}, {"weights", weights}});
-  }
-  if (r.balance_before) {
-    const auto one = [](const Balance& b) {
-      return json{{"contact", value(b.contact)},
-                  {"contact_freedom", b.contact_freedom},
-                  {"inertia", value(b.inertia)},
-                  {"inertia_freedom", b.inertia_freedom},
-                  {"inertia_share", value(b.inertia_share())}};
-    };
-    out["balances"] = {{"before", one(*r.balance_before)}, {"after", one(*r.balance_after)}};
-  }
-  if (r.corrected) {
-    json channels = json::array();
-    for (std::size_t k = 0; k < r.channels.size(); ++k) {
-      const Errors before = errors(r.corrected->rows, &UsedRow::before, k);
-      channels.push_back({{"name", r.channels[k].name},
-                          {"before_rmse", value(before.holdout_rmse)},
-                          {"after_rmse", value(errors(r.corrected->rows, &UsedRow::after, k).holdout_rmse)},
-                          {"rows", before.holdout}});
-    }
-    json by_shot = json::array();  // model minus measured
-    for (const UsedRow& row : r.corrected->rows) {
-      json shot{{"shot", row.id}};
-      for (std::size_t k = 0; k < r.channels.size(); ++k)
-        shot[r.channels[k].name] = {{"before", value(row.before[k])}, {"after", value(row.after[k])}};
-      by_shot.push_back(std::move(shot));
-    }
-    out["corrected"] = {{"case", r.corrected->shots.empty() ? json(nullptr) : json("corrected/case.toml")},
-                        {"channels", channels},
-                        {"shots", by_shot},
-                        {"not_in_the_case", r.corrected->instrument}};
-  }
-  out["notes"] = r.notes;
+    for (const auto& [effect, weight] : v.weights) weights[effect] = weight;
+    return json{{"singular_value", v.singular}, {"weights", weights}};
+  });
+  if (r.balance_before)
+    out["balances"] = {{"before", to_json(*r.balance_before)}, {"after", to_json(*r.balance_after)}};
+  if (r.corrected) out["corrected"] = to_json(*r.corrected, r.channels);
+  nine_digits(out);
   return out;
 }
 

@@ -12,7 +12,7 @@
 #include "loop/select.hpp"
 #include "loop/shots/audit.hpp"
 #include "loop/shots/balances.hpp"
-#include "loop/shots/columns.hpp"
+#include "loop/wrong_columns.hpp"
 
 namespace hosel::loop {
 

@@ -13,6 +13,8 @@ inline constexpr double kByChance = 1e-3;
 inline constexpr double kBeyondChance = 3 * std::numbers::ln10;
 /// Twice the logarithm of evidence that is worth a mention [@bayes-factors].
 inline constexpr double kMention = 2;
+/// Fewer rows test nothing, and have no scatter of their own.
+inline constexpr std::size_t kFewestToTest = 4;
 /// Fewer rows have no form.
 inline constexpr int kFewestRows = 12;
 /// Fewer rows, or different numbers, show no relation between columns and no distribution.
@@ -21,6 +23,17 @@ inline constexpr std::size_t kFewestToLearn = 20;
 inline constexpr std::size_t kFewestDifferent = 8;
 /// Of a column that other rows lack: fewer tell neither their own noise nor what the column is.
 inline constexpr int kFewestOfRows = 10;
+
+/// Steps of differences, in scales of what is changed: those that are to be accurate, and those that need two digits.
+inline constexpr double kStep = 1e-3, kCoarseStep = 0.01;
+/// Of the session: a step is sought between so many equal parts.
+inline constexpr int kPartsOfSession = 12;
+/// Of candidates, by what they promise: so many are looked at again, through or beside something else.
+inline constexpr std::size_t kLikeliest = 6;
+/// Passes after which an iteration has settled.
+inline constexpr int kPasses = 40;
+/// Findings of one kind that are told, at most.
+inline constexpr std::size_t kMostTold = 4;
 
 /// Level at which a finding is told beside the plainest, or where the declared noise is refuted.
 inline constexpr double kTold = 0.05;

@@ -193,7 +193,7 @@ std::vector<Candidate> Search::grown(const std::vector<Candidate>& sets, std::si
 std::vector<Candidate> Search::refined(std::vector<Candidate> all) const {
   std::ranges::stable_sort(all, {}, &Candidate::criterion);
   if (std::isfinite(problem_.stages().front().window))
-    for_all(std::size_t(0), std::min<std::size_t>(all.size(), 6), [&](std::size_t k) {
+    for_all(std::size_t(0), std::min(all.size(), kLikeliest), [&](std::size_t k) {
       const Model& m = all[k].fit.model;
       std::vector<Eigen::VectorXd> from = {all[k].fit.p};
       // Each member at its own optimum, the others at zero.
@@ -247,7 +247,7 @@ bool Search::acts(const Parametrisation* form) const {
   const auto n = Eigen::Index(form->parameters.size());
   std::vector<Eigen::VectorXd> places;
   for (Eigen::Index k = 0; k < n; ++k) {
-    const Parameter& q = form->parameters[std::size_t(k)];
+    const Parameter& q = form->parameters[k];
     places.push_back(Eigen::VectorXd::Unit(n, k) * (q.max >= q.scale ? q.scale : -q.scale));
   }
   for (const auto& s : form->starts) places.push_back(as_vector(s));
@@ -288,7 +288,7 @@ Eigen::MatrixXd Search::about_zero(const Parametrisation& form) const {
   if (!form.threshold) return problem_.jacobian(Part::select, at.model, at.p).rightCols(n);
   Eigen::MatrixXd probes = Eigen::MatrixXd::Zero(z0_.size(), Eigen::Index(form.starts.size()));
   for (Eigen::Index k = 0; k < probes.cols(); ++k) {
-    at.p.tail(n) = as_vector(form.starts[std::size_t(k)]);
+    at.p.tail(n) = as_vector(form.starts[k]);
     const Eigen::VectorXd z = whitened(problem_, Part::select, at.model, at.p);
     if (z.size()) probes.col(k) = (z - z0_) / (at.p[at.p.size() - 1] / form.parameters.back().scale);
   }

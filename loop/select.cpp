@@ -135,21 +135,19 @@ Selection select(const Problem& problem, const std::vector<const Parametrisation
     };
     std::ranges::for_each(*level, add);
     // A larger set is another explanation where it does without one of these names; of two for one, if it is likelier.
-    const auto all_in = [&](const Candidate& c) {
-      return std::ranges::all_of(best.effects, [&](auto& e) { return has(c.effects, e); });
+    const auto holds = [](const Candidate& c, const Candidate& part) {
+      return std::ranges::all_of(part.effects, [&](const std::string& e) { return has(c.effects, e); });
     };
     // With another tied set in it, it is that set and more.
     const std::vector<const Candidate*> as_large = tied;
     const auto more = [&](const Candidate& c) {
-      return std::ranges::any_of(as_large, [&](const Candidate* t) {
-        return std::ranges::all_of(t->effects, [&](const std::string& e) { return has(c.effects, e); });
-      });
+      return std::ranges::any_of(as_large, [&](const Candidate* t) { return holds(c, *t); });
     };
     for (const Candidate& c : search.triples)
       if (c.effects.size() > best.effects.size() && !more(c)) add(c);
     for (const Candidate& c : search.pairs) {
       if (s.level > 1 || c.fit.at_bound || !(c.criterion + rules.tie < best.criterion)) continue;
-      if (!all_in(c)) add(c);
+      if (!holds(c, best)) add(c);
       else if (s.likelier.empty()) s.likelier = c.effects;
     }
     // Many sets without a name in common that are no choices from few ties: the data do not name anything.

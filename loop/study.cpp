@@ -66,12 +66,11 @@ const Parametrisation* Study::drift() const {
 /// than one that settles early.
 bool Study::jumps_rather() const {
   if (!drift()) return false;
-  constexpr int places = 12;
-  const double enough = rules.tie + 2 * std::log(places - 1.0),
+  const double enough = rules.tie + 2 * std::log(kPartsOfSession - 1.0),
                drifting = std::min(criterion(selection.chosen, rules),
                                    likeliest_placed([](double order) { return 1 - std::exp(-5 * order); }));
-  for (int k = 1; k < places; ++k) {
-    const double at = double(k) / places;
+  for (int k = 1; k < kPartsOfSession; ++k) {
+    const double at = double(k) / kPartsOfSession;
     if (likeliest_placed([at](double order) { return order > at ? 1.0 : 0.0; }) + enough < drifting) return true;
   }
   return false;

@@ -144,25 +144,24 @@ const Candidate* nearly_alone(const Selection& s, const Study& study) {
   return nullptr;
 }
 
-/// Effects beyond the base that do no more than noise of an input.
-std::vector<Attenuation> attenuated(const Study& study, const Fit& f) {
-  std::vector<Attenuation> found = study.problem.attenuations(f);
+/// What may stand for the effects beyond the base: noise of an input, or errors that the shots of a group share.
+std::vector<Location> by_errors(const Study& study, const Fit& f) {
   const std::vector<std::string> names = f.model.effects(study.base.size());
-  std::erase_if(found, [&](const Attenuation& a) { return !std::ranges::count(names, a.effect); });
-  return found;
-}
-
-/// Where shots of a group share errors: that too little is left of the names.
-std::optional<Location> shared_by_groups(const Study& study, const Fit& f) {
-  const std::vector<std::string> names = f.model.effects(study.base.size());
-  if (names.empty()) return {};
+  std::vector<Location> told;
+  for (const Attenuation& a : study.problem.attenuations(f))
+    if (std::ranges::count(names, a.effect))
+      told.push_back({"", a.column,
+                      fmt::format("noise or slips in its records ({:.0f} % of their variance) would do the same as {}",
+                                  100 * a.share, a.effect)});
+  if (names.empty() || !told.empty()) return told;
   const std::optional<Clustered> left = study.problem.clustered(study.selection.base, f);
   const double least = study.rules.gain + study.rules.further_gain * (double(names.size()) - 1);
-  if (!left || left->fall > least) return {};
-  return Location{"", left->along,
-                  fmt::format("its values share errors; beside these {} takes off {:.3g} squared noise units, less "
-                              "than {:.3g}",
-                              fmt::join(names, " and "), left->fall, least)};
+  if (left && !(left->fall > least))
+    told.push_back({"", left->along,
+                    fmt::format("its values share errors; beside these {} takes off {:.3g} squared noise units, less "
+                                "than {:.3g}",
+                                fmt::join(names, " and "), left->fall, least)});
+  return told;
 }
 
 /// Returns the first verdict whose condition holds, in the order below.
@@ -180,24 +179,11 @@ Verdict judge(const Study& study, const std::vector<WrongColumn>& columns, const
     unexplained = problem.places(s);
     return Verdict::unexplained;
   }
-  if (unexplained = problem.shapes(s); !unexplained.empty()) return Verdict::unexplained;
-  if (unexplained = without_name; !unexplained.empty()) return Verdict::unexplained;
-  if (unexplained = one.unexplained; !unexplained.empty()) return Verdict::unexplained;
-  const Fit& told = one.lone ? one.lone->fit : s.chosen;
-  for (const Attenuation& a : attenuated(study, told))
-    unexplained.push_back(
-        {"", a.column,
-         fmt::format("noise or slips in its records ({:.0f} % of their variance) would do the same as {}",
-                     100 * a.share, a.effect)});
-  if (!unexplained.empty()) return Verdict::unexplained;
-  if (auto by_groups = shared_by_groups(study, told)) {
-    unexplained.push_back(*std::move(by_groups));
+  const auto found = [&](std::vector<Location> places) { return !(unexplained = std::move(places)).empty(); };
+  if (found(problem.shapes(s)) || found(without_name) || found(one.unexplained) ||
+      found(by_errors(study, one.lone ? one.lone->fit : s.chosen)) ||
+      (!s.at_every_shot.empty() && found({{"", "", s.at_every_shot}})))
     return Verdict::unexplained;
-  }
-  if (!s.at_every_shot.empty()) {
-    unexplained.push_back({"", "", s.at_every_shot});
-    return Verdict::unexplained;
-  }
   if (s.structured && s.level == 0) return Verdict::insufficient;
   bool declared = false, refuted = false;
   for (int c = 0; c < problem.width(); ++c) {
@@ -381,7 +367,7 @@ void conclude(const Study& study, LoopResult& result) {
   if (result.verdict == Verdict::unexplained && s.level > 0 && (!s.clean || !without_name.empty())) {
     kept = beyond_doubt(study);
     if (kept.fit.size() > 0 && (!beats(kept.fit, s.base, problem.remainder(kept.fit), bare, study.rules) ||
-                                !attenuated(study, kept.fit).empty() || shared_by_groups(study, kept.fit)))
+                                !by_errors(study, kept.fit).empty()))
       kept = {};
   }
   const bool some_kept = !kept.adopted.empty() || !kept.ties.empty();

@@ -8,7 +8,7 @@ std::vector<Parametrisation> air_density(const Setting& setting) {
   if (!setting.flies) return {};
   return {{.what = "factor on the density",
            .parameters = {{"relative_density", "1", 1, -0.35, 0.2, 0.02}},
-           .flight = [](std::span<const double> p, models::FlightConditions& c) { c.air.density *= 1 + p[0]; }}};
+           .flight = [](Sizes p, models::FlightConditions& c) { c.air.density *= 1 + p[0]; }}};
 }
 
 }  // namespace hosel::loop::forms

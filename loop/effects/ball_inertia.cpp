@@ -8,7 +8,7 @@ std::vector<Parametrisation> ball_inertia(const Setting& setting) {
   // Usual: assumed, layers that differ in density by a tenth.
   return {{.what = "inertia factor I / (m r^2)",
            .parameters = {Parameter{"change_of_inertia_factor", "1", 1, -0.15, 0.2, 0.02}.within(0.03)},
-           .before = [](std::span<const double> p, Shot& t) { t.blow.ball.inertia_factor += p[0]; }}};
+           .before = [](Sizes p, Shot& t) { t.blow.ball.inertia_factor += p[0]; }}};
 }
 
 }  // namespace hosel::loop::forms

@@ -10,7 +10,7 @@ std::vector<Parametrisation> ball_relaxation(const Setting& setting) {
            .parameters = {{"log_factor_of_branch_times", "1", 1, -1.5, 2.5, 0.3}},
            .complexity = 3,
            .starts = {{1.5}},
-           .before = [](std::span<const double> p, Shot& s) { s.change.relaxation += p[0]; }}};
+           .before = [](Sizes p, Shot& s) { s.change.relaxation += p[0]; }}};
 }
 
 }  // namespace hosel::loop::forms

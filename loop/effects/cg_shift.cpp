@@ -14,7 +14,7 @@ std::vector<Parametrisation> cg_shift(const Setting& setting) {
   const auto along = [&](const std::vector<int>& axes, const char* what) {
     Parametrisation f{.what = what};
     for (const int a : axes) f.parameters.push_back(component(kShifts[a]));
-    f.before = [axes](std::span<const double> p, Shot& t) {
+    f.before = [axes](Sizes p, Shot& t) {
       for (std::size_t k = 0; k < axes.size(); ++k) t.blow.club.head.cg[axes[k]] += p[k];
     };
     return f;
@@ -31,7 +31,7 @@ std::vector<Parametrisation> cg_shift(const HistorySetting& setting) {
   const auto along = [](const std::vector<int>& axes, const char* what, double complexity) {
     Parametrisation f{.what = what, .complexity = complexity};
     for (const int a : axes) f.parameters.push_back({kShifts[a], "mm", 1e-3, -0.03, 0.03, 1e-3});
-    f.setup = [axes](std::span<const double> p, TestSetup& r) {
+    f.setup = [axes](Sizes p, TestSetup& r) {
       for (std::size_t k = 0; k < axes.size(); ++k) r.club.cg[axes[k]] += p[k];
     };
     return f;

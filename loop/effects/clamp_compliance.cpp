@@ -11,7 +11,7 @@ std::vector<Parametrisation> clamp_compliance(const HistorySetting& setting) {
                       .parameters = {{"compliance", "mrad/(N m)", 1e-3, 0, 2 * unit, 0.01 * unit}},
                       .complexity = complexity,
                       .starts = {{0.05 * unit}, {0.3 * unit}}};
-    f.setup = [axes](std::span<const double> p, TestSetup& r) { r.club.clamp += p[0] * axes; };
+    f.setup = [axes](Sizes p, TestSetup& r) { r.club.clamp += p[0] * axes; };
     return f;
   };
   std::vector<Parametrisation> forms = {form("alike in both planes", 0, Vec3(1, 1, 0)),

@@ -9,10 +9,10 @@ std::vector<Parametrisation> face_compliance(const Setting& s) {
   Parametrisation f{.what = "compliance at the face centre, falling to the edge like a clamped plate's",
                     .parameters = {{"compliance", "nm/N", 1e-9, 0, 250e-9, 20e-9}}};
   if (s.deformable) {  // its face is a surface that moves: irons' as well
-    f.before = [](std::span<const double> p, Shot& t) { t.change.face_compliance += p[0]; };
+    f.before = [](Sizes p, Shot& t) { t.change.face_compliance += p[0]; };
     return {f};
   }
-  f.before = [face = s.face](std::span<const double> p, Shot& t) {
+  f.before = [face = s.face](Sizes p, Shot& t) {
     const double shape = face.shape(-t.blow.delivery.impact_toe, t.blow.delivery.impact_high).value;
     const double left = models::loss_on_face(p[0] * shape * shape);
     ContactLaw& law = t.blow.contact;

@@ -11,7 +11,7 @@ std::vector<Parametrisation> friction_limit(const Setting& setting) {
     return {{.what = "a factor on the declared coefficient",
              .parameters = {{"log_factor_of_friction", "1", 1, -1.6, 1.0, 0.1}},
              .starts = {{-0.8}},
-             .before = [](std::span<const double> p, Shot& s) { s.blow.contact.friction *= std::exp(p[0]); }}};
+             .before = [](Sizes p, Shot& s) { s.blow.contact.friction *= std::exp(p[0]); }}};
   }
   // 1 / mu, so that zero is the base model; 12 is mu = 0.083, a wet face.
   const Parameter slipperiness{"inverse_friction", "1", 1, 0, 12, 0.5};
@@ -22,7 +22,7 @@ std::vector<Parametrisation> friction_limit(const Setting& setting) {
            .parameters = {slipperiness},
            .starts = starts,
            .threshold = true,
-           .before = [](std::span<const double> p, Shot& t) {
+           .before = [](Sizes p, Shot& t) {
              if (p[0] > 0) t.blow.contact.friction = std::min(t.blow.contact.friction, 1 / p[0]);
            }}};
 }

@@ -19,43 +19,38 @@ void add_moving_point(const Vec3& spin, const Shot& t, Launch& launch) {
 
 std::vector<Parametrisation> head_closure(const Setting& setting) {
   // Usual: assumed, a club that closes at 2000 deg/s.
-  const auto rate = [](const char* name) { return Parameter{name, "rad/s", 1, -90, 90, 10}.within(35); };
-  const auto about = [&](const std::vector<int>& axes, const char* what) {
-    static constexpr const char* names[] = {"rate_x", "rate_y", "rate_z"};
+  const auto turning = [&](const char* what, const std::vector<const char*>& rates, auto vector) {
     Parametrisation f{.what = what};
-    for (const int a : axes) f.parameters.push_back(rate(names[a]));
-    const auto vector = [axes](std::span<const double> p) {
-      Vec3 w = Vec3::Zero();
-      for (std::size_t k = 0; k < axes.size(); ++k) w[axes[k]] = p[k];
-      return w;
-    };
+    for (const char* name : rates) f.parameters.push_back(Parameter{name, "rad/s", 1, -90, 90, 10}.within(35));
     if (setting.head_turns)
-      f.before = [vector](std::span<const double> p, Shot& t) { t.blow.delivery.head_angular_velocity += vector(p); };
+      f.before = [vector](Sizes p, Shot& t) {
+        if (const Vec3 w = vector(p, t.blow); !w.isZero(0)) t.blow.delivery.head_angular_velocity += w;
+      };
     else
-      f.after = [vector](std::span<const double> p, const Shot& t, Launch& launch) {
-        if (const Vec3 w = vector(p); !w.isZero(0)) add_moving_point(w, t, launch);
+      f.after = [vector](Sizes p, const Shot& t, Launch& launch) {
+        if (const Vec3 w = vector(p, t.blow); !w.isZero(0)) add_moving_point(w, t, launch);
       };
     return f;
   };
-  Parametrisation shaft{.what = "about the shaft", .parameters = {rate("rate_shaft")}};
-  const auto about_shaft = [](double w, const Blow& b) {
-    return Vec3(w * (b.delivery.face_to_global() * b.club.geometry.shaft_axis));
+  const auto about = [&](const std::vector<int>& axes, const char* what) {
+    static constexpr const char* names[] = {"rate_x", "rate_y", "rate_z"};
+    std::vector<const char*> rates;
+    for (const int a : axes) rates.push_back(names[a]);
+    return turning(what, rates, [axes](Sizes p, const Blow&) {
+      Vec3 w = Vec3::Zero();
+      for (std::size_t k = 0; k < axes.size(); ++k) w[axes[k]] = p[k];
+      return w;
+    });
   };
-  if (setting.head_turns)
-    shaft.before = [about_shaft](std::span<const double> p, Shot& t) {
-      if (p[0] != 0) t.blow.delivery.head_angular_velocity += about_shaft(p[0], t.blow);
-    };
-  else
-    shaft.after = [about_shaft](std::span<const double> p, const Shot& t, Launch& launch) {
-      if (p[0] != 0) add_moving_point(about_shaft(p[0], t.blow), t, launch);
-    };
   // A club closes about its shaft, which stands more upright than flat: rates about the horizontal are unusual, and
   // they do to the launch what a shifted centre of gravity does.
   std::vector<Parametrisation> all = {
       about({2}, "about the vertical"), about({1}, "about the horizontal across the target line"),
       about({1, 2}, "about the vertical and the horizontal"), about({0, 1, 2}, "about three axes")};
   for (std::size_t k = 1; k < all.size(); ++k) all[k].complexity = 10;
-  all.push_back(shaft);
+  all.push_back(turning("about the shaft", {"rate_shaft"}, [](Sizes p, const Blow& b) {
+    return Vec3(p[0] * (b.delivery.face_to_global() * b.club.geometry.shaft_axis));
+  }));
   return all;
 }
 

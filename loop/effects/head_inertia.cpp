@@ -21,16 +21,16 @@ std::vector<Parametrisation> head_inertia(const Setting& setting) {
   // Logarithm of the factor: zero is the declared tensor, and no factor can turn negative. Usual: assumed, half again.
   const auto factor = [](const char* name) { return Parameter{name, "1", 1, -0.8, 1.5, 0.1}.within(0.4); };
   Parametrisation all{.what = "one factor on the tensor", .parameters = {factor("log_factor")}};
-  all.before = [](std::span<const double> p, Shot& t) { t.blow.club.head.inertia *= std::exp(p[0]); };
+  all.before = [](Sizes p, Shot& t) { t.blow.club.head.inertia *= std::exp(p[0]); };
   const auto along = [&](int axis, const char* name, const char* what) {
     Parametrisation one{.what = what, .parameters = {factor(name)}};
-    one.before = [axis](std::span<const double> p, Shot& t) { scale_moment(t.blow.club.head, axis, p[0]); };
+    one.before = [axis](Sizes p, Shot& t) { scale_moment(t.blow.club.head, axis, p[0]); };
     return one;
   };
   Parametrisation two{.what = "factors about the horizontal and the vertical axis",
                       .parameters = {factor("log_factor_horizontal"), factor("log_factor_vertical")}};
-  two.before = [](std::span<const double> p, Shot& t) {
-    for (const int k : {0, 1}) scale_moment(t.blow.club.head, k + 1, p[std::size_t(k)]);
+  two.before = [](Sizes p, Shot& t) {
+    for (const int k : {0, 1}) scale_moment(t.blow.club.head, k + 1, p[k]);
   };
   return {all, along(2, "log_factor_vertical", "about the vertical axis of the face"),
           along(1, "log_factor_horizontal", "about the horizontal axis of the face"), two};
@@ -43,7 +43,7 @@ std::vector<Parametrisation> head_inertia(const HistorySetting& setting) {
                       .parameters = {{name, "1", 1, -0.8, 1.2, 0.02}},
                       .complexity = complexity,
                       .starts = {{-0.3}, {0.3}}};
-    f.setup = [axes](std::span<const double> p, TestSetup& r) { r.club.inertia += p[0] * axes; };
+    f.setup = [axes](Sizes p, TestSetup& r) { r.club.inertia += p[0] * axes; };
     return f;
   };
   return {about("one factor on the tensor", "log_factor", 0, Vec3::Ones()),

@@ -10,7 +10,7 @@ std::vector<Parametrisation> head_rotation(const Setting& setting) {
   // 1 is a head as free as the declared inertia says; a held head turns less.
   const Parameter freedom{"freedom", "1", 1, 0, 1.6, 0.2};
   Parametrisation rotation{.what = "the declared inertia turns", .parameters = {freedom}};
-  rotation.after = [](std::span<const double> p, const Shot& t, Launch& launch) {
+  rotation.after = [](Sizes p, const Shot& t, Launch& launch) {
     if (p[0] == 0) return;
     Blow turned = t.blow, fixed = t.blow;
     turned.club.head.inertia = t.blow.club.head.inertia / p[0];
@@ -20,7 +20,7 @@ std::vector<Parametrisation> head_rotation(const Setting& setting) {
   // The whole eccentric blow in place of the planar one: face, path and curvature act too.
   Parametrisation whole{.what = "free head, with face, path and curvature in three dimensions",
                         .parameters = {freedom}};
-  whole.after = [](std::span<const double> p, const Shot& t, Launch& launch) {
+  whole.after = [](Sizes p, const Shot& t, Launch& launch) {
     if (p[0] == 0) return;
     Blow planar = t.blow;
     planar.delivery.club_path = planar.delivery.face_angle = 0;

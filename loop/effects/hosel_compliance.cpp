@@ -12,7 +12,7 @@ std::vector<Parametrisation> hosel_compliance(const HistorySetting& setting) {
                       .parameters = {{"compliance", "mrad/(N m)", 1e-3, 0, 2 * unit, 0.01 * unit}},
                       .complexity = complexity,
                       .starts = {{0.05 * unit}, {0.3 * unit}}};
-    f.setup = [axes](std::span<const double> p, TestSetup& r) { r.club.hosel += p[0] * axes; };
+    f.setup = [axes](Sizes p, TestSetup& r) { r.club.hosel += p[0] * axes; };
     return f;
   };
   return {form("alike about all axes", 0, Vec3::Ones()), form("across the shaft", 0, Vec3(1, 1, 0)),

@@ -8,7 +8,7 @@ std::vector<Parametrisation> lift_law(const Setting& setting) {
   if (!setting.flies) return {};
   return {{.what = "factor on the lift coefficient",
            .parameters = {{"relative_lift", "1", 1, -0.6, 0.6, 0.03}},
-           .flight = [](std::span<const double> p, models::FlightConditions& c) { c.law.lift_scale *= 1 + p[0]; }}};
+           .flight = [](Sizes p, models::FlightConditions& c) { c.law.lift_scale *= 1 + p[0]; }}};
 }
 
 }  // namespace hosel::loop::forms

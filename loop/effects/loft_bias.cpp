@@ -9,13 +9,11 @@ std::vector<Parametrisation> loft_bias(const Setting&) {
       Parameter{"offset", "deg", kRadPerDeg, radians(-8), radians(8), radians(0.5)}.within(radians(2));
   const Parameter gain = Parameter{"gain", "1", 1, -0.3, 0.3, 0.03}.within(0.1);
   Parametrisation constant{.what = "constant", .parameters = {offset}};
-  constant.before = [](std::span<const double> p, Shot& t) { t.blow.delivery.dynamic_loft += p[0]; };
+  constant.before = [](Sizes p, Shot& t) { t.blow.delivery.dynamic_loft += p[0]; };
   Parametrisation scale{.what = "in proportion to the loft", .parameters = {gain}};
-  scale.before = [](std::span<const double> p, Shot& t) { t.blow.delivery.dynamic_loft *= 1 + p[0]; };
+  scale.before = [](Sizes p, Shot& t) { t.blow.delivery.dynamic_loft *= 1 + p[0]; };
   Parametrisation line{.what = "constant and in proportion to the loft", .parameters = {offset, gain}};
-  line.before = [](std::span<const double> p, Shot& t) {
-    t.blow.delivery.dynamic_loft += p[0] + p[1] * t.blow.delivery.dynamic_loft;
-  };
+  line.before = [](Sizes p, Shot& t) { t.blow.delivery.dynamic_loft += p[0] + p[1] * t.blow.delivery.dynamic_loft; };
   return {constant, scale, line};
 }
 

@@ -16,7 +16,7 @@ std::vector<Parametrisation> monitor_misalignment(const Setting& setting) {
     static constexpr const char* names[] = {"roll", "pitch", "yaw"};
     Parametrisation f{.what = what};
     for (const int a : axes) f.parameters.push_back(angle(names[a], a == 2 ? 5 : 3));
-    f.after = [axes](std::span<const double> p, const Shot&, Launch& launch) {
+    f.after = [axes](Sizes p, const Shot&, Launch& launch) {
       Mat3 turn = Mat3::Identity();
       bool turned = false;
       for (std::size_t k = 0; k < axes.size(); ++k) {

@@ -12,7 +12,7 @@ std::vector<Parametrisation> normal_force_offset(const Setting& setting) {
   // The couple of the normal impulse alone: friction has stopped acting when it comes, and spin is added to rolling.
   Parametrisation couple{
       .what = "offset over the ball's radius, its couple added to rolling", .parameters = {offset}, .complexity = 3};
-  couple.after = [](std::span<const double> p, const Shot& t, Launch& launch) {
+  couple.after = [](Sizes p, const Shot& t, Launch& launch) {
     if (p[0] == 0) return;
     const FirstContact g = first_contact(t.blow);
     const Vec3 slip = g.slip();
@@ -23,12 +23,12 @@ std::vector<Parametrisation> normal_force_offset(const Setting& setting) {
   // Friction closes the slip all the same: then the offset moves impulse from the tangent to the couple.
   Parametrisation closed{
       .what = "offset over the ball's radius, rolling kept", .parameters = {offset}, .complexity = 3};
-  closed.before = [](std::span<const double> p, Shot& t) { t.blow.contact.normal_force_offset += p[0]; };
+  closed.before = [](Sizes p, Shot& t) { t.blow.contact.normal_force_offset += p[0]; };
   // Without slip there is no side to go to: in the simplest law of that kind it is in proportion. It lasts as long as
   // the slip, which friction closes.
   Parametrisation with_slip{
       .what = "offset in proportion to slip over approach, rolling kept", .parameters = {share}, .complexity = 3};
-  with_slip.before = [](std::span<const double> p, Shot& t) {
+  with_slip.before = [](Sizes p, Shot& t) {
     const FirstContact g = first_contact(t.blow);
     const double approach = g.approach.dot(g.normal);
     if (p[0] != 0 && approach > 0) t.blow.contact.normal_force_offset += p[0] * g.slip().norm() / approach;

@@ -14,7 +14,7 @@ inline std::vector<Parametrisation> per_channel(const HistorySetting& setting, c
   const auto add = [&](const std::string& what, std::size_t first, std::size_t last) {
     Parametrisation f = one;
     f.what = what;
-    f.setup = [=](std::span<const double> p, TestSetup& r) {
+    f.setup = [=](Sizes p, TestSetup& r) {
       for (std::size_t c = first; c < last; ++c) (r.*changed)[c] += p[0];
     };
     forms.push_back(std::move(f));

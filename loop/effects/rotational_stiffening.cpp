@@ -10,7 +10,7 @@ std::vector<Parametrisation> rotational_stiffening(const HistorySetting& setting
   return {{.what = "share of the centrifugal stiffness",
            .parameters = {{"share", "1", 1, 0, 2, 0.02}},
            .starts = {{0.5}, {1}},
-           .setup = [](std::span<const double> p, TestSetup& r) { r.club.stiffening += p[0]; }}};
+           .setup = [](Sizes p, TestSetup& r) { r.club.stiffening += p[0]; }}};
 }
 
 }  // namespace hosel::loop::forms

@@ -16,7 +16,7 @@ std::vector<Parametrisation> sensor_offset(const HistorySetting& setting) {
     Parametrisation one{.what = fmt::format("of {}", channel.name),
                         .parameters = {{"offset", channel.name.substr(channel.name.rfind('_') + 1), channel.si,
                                         -100 * unit, 100 * unit, 0.1 * unit}}};
-    one.setup = [c](std::span<const double> p, TestSetup& r) { r.offset[c] += p[0]; };
+    one.setup = [c](Sizes p, TestSetup& r) { r.offset[c] += p[0]; };
     forms.push_back(one);
   }
   return forms;

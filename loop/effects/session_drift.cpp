@@ -31,7 +31,7 @@ std::vector<Parametrisation> session_drift(const Setting& setting) {
     const auto readings = [&](const std::vector<Output>& outputs, const std::string& what, double complexity) {
       Parametrisation f{.what = what + from, .complexity = complexity, .of_order = true};
       for (const Output output : outputs) f.parameters.push_back(size_of(output));
-      f.reading = [outputs, zero](std::span<const double> q, const Shot& t, Output o, double value) {
+      f.reading = [outputs, zero](Sizes q, const Shot& t, Output o, double value) {
         for (std::size_t k = 0; k < outputs.size(); ++k)
           if (o == outputs[k] && q[k] != 0) return value + q[k] * (t.order - zero);
         return value;
@@ -48,7 +48,7 @@ std::vector<Parametrisation> session_drift(const Setting& setting) {
     // What drifts is the instrument before it is the club or the ball.
     const auto drift = [&](const char* what, Parameter p, double& (*of)(Shot&), bool relative) {
       Parametrisation f{.what = what + from, .parameters = {std::move(p)}, .complexity = 8, .of_order = true};
-      f.before = [of, relative, zero](std::span<const double> q, Shot& t) {
+      f.before = [of, relative, zero](Sizes q, Shot& t) {
         double& x = of(t);
         x += q[0] * (t.order - zero) * (relative ? x : 1);
       };

@@ -26,22 +26,22 @@ std::vector<Parametrisation> shaft_coupling(const Setting& setting) {
   if (setting.shaft) {
     Parametrisation hung{
         .what = "share of the declared shaft", .parameters = {{"share", "1", 1, 0, 1.6, 0.1}}, .starts = {{1.0}}};
-    hung.before = [](std::span<const double> p, Shot& s) { s.change.shaft += p[0]; };
+    hung.before = [](Sizes p, Shot& s) { s.change.shaft += p[0]; };
     return {hung};
   }
   const Parameter mass{"added_mass_at_hosel", "g", 1e-3, 0, 0.04, 3e-3};
   const Parameter stiffening{"added_inertia", "kg m^2", 1, 0, 4e-4, 3e-5};
   Parametrisation point{.what = "added mass at the hosel", .parameters = {mass}};
-  point.before = [](std::span<const double> p, Shot& t) {
+  point.before = [](Sizes p, Shot& t) {
     if (p[0] != 0) attach(t.blow, p[0], 0);
   };
   if (!setting.head_turns) return {};
   Parametrisation both{.what = "added mass and rotational inertia at the hosel", .parameters = {mass, stiffening}};
-  both.before = [](std::span<const double> p, Shot& t) {
+  both.before = [](Sizes p, Shot& t) {
     if (p[0] != 0 || p[1] != 0) attach(t.blow, p[0], p[1]);
   };
   Parametrisation stiff{.what = "added rotational inertia across the shaft", .parameters = {stiffening}};
-  stiff.before = [](std::span<const double> p, Shot& t) {
+  stiff.before = [](Sizes p, Shot& t) {
     if (p[0] != 0) attach(t.blow, 0, p[0]);
   };
   if (setting.hosel_declared) return {point, stiff, both};
@@ -51,13 +51,13 @@ std::vector<Parametrisation> shaft_coupling(const Setting& setting) {
   heel.known = up.known = 0.01;
   Parametrisation placed{.what = "added mass at the hosel, wherever it is", .parameters = {mass, heel, up}};
   placed.starts = {{0.01, 0, 0}};
-  placed.before = [](std::span<const double> p, Shot& t) {
+  placed.before = [](Sizes p, Shot& t) {
     if (p[0] != 0) attach(t.blow, p[0], 0, Vec3(0, p[1], p[2]));
   };
   Parametrisation stiff_placed{.what = "added mass and rotational inertia at the hosel, wherever it is",
                                .parameters = {mass, stiffening, heel, up}};
   stiff_placed.starts = {{0.01, 3e-5, 0, 0}};
-  stiff_placed.before = [](std::span<const double> p, Shot& t) {
+  stiff_placed.before = [](Sizes p, Shot& t) {
     if (p[0] != 0 || p[1] != 0) attach(t.blow, p[0], p[1], Vec3(0, p[2], p[3]));
   };
   return {point, stiff, both, placed, stiff_placed};

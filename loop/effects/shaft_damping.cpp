@@ -12,14 +12,14 @@ std::vector<Parametrisation> shaft_damping(const HistorySetting& setting) {
     return Parametrisation{
         .what = what, .parameters = {ratio}, .complexity = complexity, .starts = {{0.01}}, .setup = apply};
   };
-  std::vector<Parametrisation> forms = {
-      form("in proportion to the stiffness", 0,
-           [first](std::span<const double> p, TestSetup& r) { r.club.damping_time += 2 * p[0] / first; })};
+  std::vector<Parametrisation> forms = {form("in proportion to the stiffness", 0, [first](Sizes p, TestSetup& r) {
+    r.club.damping_time += 2 * p[0] / first;
+  })};
   if (setting.swing) return forms;
-  forms.push_back(form("the same ratio for every mode", 0,
-                       [](std::span<const double> p, TestSetup& r) { r.club.damping_ratio += p[0]; }));
+  forms.push_back(
+      form("the same ratio for every mode", 0, [](Sizes p, TestSetup& r) { r.club.damping_ratio += p[0]; }));
   forms.push_back(form("in proportion to the mass", 0,
-                       [first](std::span<const double> p, TestSetup& r) { r.club.mass_damping += 2 * p[0] * first; }));
+                       [first](Sizes p, TestSetup& r) { r.club.mass_damping += 2 * p[0] * first; }));
   return forms;
 }
 

@@ -12,7 +12,9 @@
 #include "golf/data_error.hpp"
 #include "golf/dense.hpp"
 #include "golf/parallel.hpp"
+#include "golf/units.hpp"
 #include "loop/deviation.hpp"
+#include "loop/flights/columns.hpp"
 #include "loop/shots/inputs.hpp"
 #include "loop/shots/scatter.hpp"
 #include "loop/shots/split.hpp"
@@ -23,6 +25,7 @@ namespace hosel::loop {
 namespace {
 
 constexpr std::size_t kFewestFlights = 8;  // training flights that can test anything
+constexpr std::size_t kRivals = 12;        // of a slip of a column, the likeliest
 constexpr double kIntegrationStep = 0.05;  // [s]: differences of flights are taken, so that they are smooth
 
 /// Steps of the differences, by ShotUnknown, then of a group's unknowns: a reading moves by far more than the
@@ -30,71 +33,30 @@ constexpr double kIntegrationStep = 0.05;  // [s]: differences of flights are ta
 constexpr std::array<double, models::kShotUnknowns> kOwnStep = {1e-2, 1e-2, 1e-2, 1e-2, 0.1, 1e-3, 1e-3, 0.1, 0.1};
 constexpr std::array<double, 3> kGroupStep = {0.1, 0.1, 1e-3};
 
-/// A flight that the others of its group do not foretell.
-struct Stranger {
-  int flight = 0;
-  double squared = 0;        ///< squared distance of its readings from what the others foretell [standard deviations]
-  Eigen::Index reading = 0;  ///< the one that is farthest off
-};
-
-/// Those of the flights of one group whose squared distance is beyond `limit` of their number of readings, the farthest
-/// first. Each is judged by all others that are left, whatever their order, and leaves before the next is.
-/// `factor`: L of the residuals' covariance; `of`: the flight of each residual.
-template <class Limit>
-std::vector<Stranger> strangers(const Eigen::MatrixXd& factor, Eigen::VectorXd residuals, std::vector<int> of,
-                                const Limit& limit) {
-  Eigen::MatrixXd P = Eigen::MatrixXd::Identity(factor.rows(), factor.cols());
-  factor.triangularView<Eigen::Lower>().solveInPlace(P);
-  P = (P.transpose() * P).eval();
-  std::vector<Eigen::Index> place(of.size());  // of what is left, in the group
-  std::iota(place.begin(), place.end(), Eigen::Index(0));
-  std::vector<Stranger> all;
-  while (!of.empty()) {
-    const Eigen::VectorXd v = P * residuals;
-    std::map<int, std::vector<Eigen::Index>> flights;
-    for (std::size_t k = 0; k < of.size(); ++k) flights[of[k]].push_back(Eigen::Index(k));
-    Stranger most;
-    double excess = 1;
-    for (const auto& [flight, own] : flights) {
-      const Eigen::VectorXd vk = v(own);
-      const double squared = vk.dot(dense::Cholesky(P(own, own)).solve(vk));
-      if (!(squared > excess * limit(own.size()))) continue;
-      excess = squared / limit(own.size());
-      const Eigen::VectorXd off = vk.cwiseAbs().cwiseQuotient(P.diagonal()(own).cwiseSqrt());
-      Eigen::Index worst = 0;
-      off.maxCoeff(&worst);
-      most = {flight, squared, place[std::size_t(own[std::size_t(worst)])]};
-    }
-    if (!(most.squared > 0)) break;
-    all.push_back(most);
-    std::vector<Eigen::Index> left;
-    for (std::size_t k = 0; k < of.size(); ++k)
-      if (of[k] != most.flight) left.push_back(Eigen::Index(k));
-    // What is left without it: the inverse of a part of the covariance.
-    const std::vector<Eigen::Index>& gone = flights[most.flight];
-    const Eigen::MatrixXd across = P(gone, left);
-    P = (P(left, left) - across.transpose() * dense::Cholesky(P(gone, gone)).solve(across)).eval();
-    residuals = residuals(left).eval();
-    for (std::size_t k = 0; k < left.size(); ++k) {
-      of[k] = of[std::size_t(left[k])];
-      place[k] = place[std::size_t(left[k])];
-    }
-    of.resize(left.size());
-  }
-  return all;
-}
-
 const char* path_axis(int axis) { return axis == 0 ? "along" : axis == 1 ? "right" : "up"; }
 
 }  // namespace
 
-FlightProblem::FlightProblem(const FlightCase& c) : case_(c) {
+FlightProblem::FlightProblem(const FlightCase& c, About about) : case_(c) {
   read();
   split();
   estimate_noise(nullptr);
-  expand({}, {});
+  if (about == About::likeliest) expand({}, {});
+  else slopes({}, {});
   estimate_noise(nullptr);
   factor();
+}
+
+FlightProblem FlightProblem::with_readings(const FlightCase& c) const {
+  FlightProblem other = *this;
+  for (int k = 0; k < width(); ++k)
+    if (readings_[std::size_t(k)].answer >= 0)
+      for (std::size_t i = 0; i < trials_.size(); ++i)
+        other.measured_(Eigen::Index(i), k) = c.shots.find(channel(k).name)->native(std::size_t(trials_[i].row));
+  other.estimate_noise(nullptr);
+  other.train_blocks_ = other.blocks(train_);
+  other.held_blocks_ = other.blocks(holdout_);
+  return other;
 }
 
 std::vector<Parametrisation> FlightProblem::forms() const {
@@ -111,7 +73,8 @@ void FlightProblem::read() {
     const auto output = c.role == Role::output ? output_of(c.stem) : std::nullopt;
     if (!output || !of_flight(*output)) continue;
     Channel ch{.name = c.name, .si = c.si, .resolution = c.resolution / c.si};
-    if (const auto it = case_.noise.find(c.name); it != case_.noise.end()) ch.declared = it->second;
+    if (const auto it = case_.noise.find(c.name); it != case_.noise.end())
+      ch.declared = std::hypot(it->second, rounding_deviation(ch.resolution));
     channels_.push_back(std::move(ch));
     readings_.push_back({.answer = flight_answer(*output)});
   }
@@ -128,7 +91,9 @@ void FlightProblem::read() {
 
   const auto noise_of = [&](Output o) {  // SI
     const Column* c = shots.find_stem(stem(o));
-    return c && case_.noise.contains(c->name) ? case_.noise.at(c->name) * c->si : 0.0;
+    return c && case_.noise.contains(c->name)
+               ? std::hypot(case_.noise.at(c->name) * c->si, rounding_deviation(c->resolution))
+               : 0.0;
   };
   const auto has = [&](Output o, std::size_t row) {
     const Column* c = shots.find_stem(stem(o));
@@ -206,7 +171,7 @@ void FlightProblem::read() {
     t.shot.group = int(known - groups_.begin());
     if (known == groups_.end()) groups_.push_back(group);
     if (const Eigen::VectorXd f = predict(t, {}, nullptr, t.own, GroupUnknowns::Zero()); !f.allFinite()) {
-      ++unused_["no flight from this launch"];
+      ++unused_[kNoFlight];
       continue;
     }
     t.shot.id = shots.id[row];
@@ -270,6 +235,14 @@ Eigen::VectorXd FlightProblem::predict(const Trial& t, const Model& model, const
   } catch (const std::invalid_argument&) { out.setConstant(kNaN); } catch (const solvers::NonConvergence&) {
     out.setConstant(kNaN);
   }
+  static const Shot no_blow;
+  model.each(p, [&](const Parametrisation& f, std::span<const double> q) {
+    for (int k = 0; f.reading && k < width(); ++k)
+      if (readings_[std::size_t(k)].answer >= 0) {
+        const auto& [name, si] = std::tie(channel(k).name, channel(k).si);
+        out[k] = f.reading(q, no_blow, *output_of(split_unit(name).stem), out[k] * si) / si;
+      }
+  });
   return out;
 }
 
@@ -278,11 +251,14 @@ void FlightProblem::expand(const Model& model, const Eigen::VectorXd& p) {
   std::vector<int> all = train_;
   all.insert(all.end(), holdout_.begin(), holdout_.end());
   std::ranges::sort(all);
-  constexpr int most = 12;
+  constexpr int most = 12, halvings = 6;
+  Eigen::MatrixXd e;
+  if (!errors(all, model, p, e)) throw DataError("the model has no answer for these data");
   for (int pass = 0; pass < most; ++pass) {
     slopes(model, p);
-    Eigen::MatrixXd e;
-    if (!errors(all, model, p, e)) throw DataError("the model has no answer for these data");
+    if (!errors(all, model, p, e)) break;
+    const std::vector<Trial> trials_before = trials_;
+    const std::vector<GroupUnknowns> group_before = group_;
     double change = 0;
     const GroupUnknowns of_group = group_sd();
     for (const Block& b : blocks(all)) {
@@ -311,6 +287,23 @@ void FlightProblem::expand(const Model& model, const Eigen::VectorXd& p) {
         t.own = own[i];
       }
     }
+    // A step may ask for unknowns with which no ball flies: it is halved in that group, in the end not taken.
+    for (int k = 0; !errors(all, model, p, e); ++k) {
+      const double way = k < halvings ? 0.5 : 0;
+      std::set<int> without;
+      for (std::size_t i = 0; i < all.size(); ++i)
+        if (e.row(Eigen::Index(i)).array().isInf().any()) without.insert(trials_[std::size_t(all[i])].shot.group);
+      for (const int i : all)
+        if (Trial& t = trials_[std::size_t(i)]; without.contains(t.shot.group)) {
+          const auto& before = trials_before[std::size_t(i)].own;
+          t.own = before + way * (t.own - before);
+        }
+      for (const int g : without) {
+        const auto& before = group_before[std::size_t(g)];
+        group_[std::size_t(g)] = before + way * (group_[std::size_t(g)] - before);
+      }
+      if (way == 0) break;
+    }
     if (change < case_.rules.noise_change) break;
   }
   slopes(model, p);
@@ -318,35 +311,37 @@ void FlightProblem::expand(const Model& model, const Eigen::VectorXd& p) {
 }
 
 void FlightProblem::slopes(const Model& model, const Eigen::VectorXd& p) {
+  for_all(std::size_t(0), trials_.size(),
+          [&](std::size_t i) { slopes(trials_[i], group_[std::size_t(trials_[i].shot.group)], model, p); });
+}
+
+/// Of one trial, about its unknowns and these of its group.
+void FlightProblem::slopes(Trial& t, const GroupUnknowns& group, const Model& model, const Eigen::VectorXd& p) const {
   const GroupUnknowns sd = group_sd();
-  for_all(std::size_t(0), trials_.size(), [&](std::size_t i) {
-    Trial& t = trials_[i];
-    const GroupUnknowns& group = group_[std::size_t(t.shot.group)];
-    t.by_own = Eigen::MatrixXd::Zero(width(), models::kShotUnknowns);
-    t.by_group = Eigen::MatrixXd::Zero(width(), kGroup);
-    const auto difference = [&](const auto& at, double step, auto into) {
-      const Eigen::VectorXd d = (at(step) - at(-step)) / (2 * step);
-      if (d.allFinite()) into = d;
-    };
-    for (int k = 0; k < models::kShotUnknowns; ++k)
-      if (t.shot.sd[k] > 0)
-        difference(
-            [&](double h) {
-              models::ShotUnknowns own = t.own;
-              own[k] += h;
-              return predict(t, model, p.data(), own, group);
-            },
-            kOwnStep[std::size_t(k)], t.by_own.col(k));
-    for (int k = 0; k < kGroup; ++k)
-      if (sd[k] > 0)
-        difference(
-            [&](double h) {
-              GroupUnknowns g = group;
-              g[k] += h;
-              return predict(t, model, p.data(), t.own, g);
-            },
-            kGroupStep[std::size_t(k)], t.by_group.col(k));
-  });
+  t.by_own = Eigen::MatrixXd::Zero(width(), models::kShotUnknowns);
+  t.by_group = Eigen::MatrixXd::Zero(width(), kGroup);
+  const auto difference = [&](const auto& at, double step, auto into) {
+    const Eigen::VectorXd d = (at(step) - at(-step)) / (2 * step);
+    if (d.allFinite()) into = d;
+  };
+  for (int k = 0; k < models::kShotUnknowns; ++k)
+    if (t.shot.sd[k] > 0)
+      difference(
+          [&](double h) {
+            models::ShotUnknowns own = t.own;
+            own[k] += h;
+            return predict(t, model, p.data(), own, group);
+          },
+          kOwnStep[std::size_t(k)], t.by_own.col(k));
+  for (int k = 0; k < kGroup; ++k)
+    if (sd[k] > 0)
+      difference(
+          [&](double h) {
+            GroupUnknowns g = group;
+            g[k] += h;
+            return predict(t, model, p.data(), t.own, g);
+          },
+          kGroupStep[std::size_t(k)], t.by_group.col(k));
 }
 
 std::vector<FlightProblem::Block> FlightProblem::blocks(const std::vector<int>& trials) const {
@@ -521,43 +516,6 @@ Problem::Density FlightProblem::density(Part part) const {
   return d;
 }
 
-/// Flights that no model of the family explains: beyond what the noise allows once in a hundred such sets.
-bool FlightProblem::screen(const Selection& selection) {
-  const Fit& at = selection.richest;
-  std::set<int> now = out_;
-  const double n = double(train_.size() + holdout_.size());
-  const auto limit = [n, level = case_.rules.gate](std::size_t readings) {
-    return boost::math::quantile(boost::math::complement(boost::math::chi_squared(double(readings)), level / n));
-  };
-  std::vector<Flag> flags = flags_;
-  for (const Part part : {Part::train, Part::holdout}) {
-    Eigen::MatrixXd e;
-    if (trials(part).empty() || !errors(trials(part), at.model, at.p, e)) continue;
-    for (const Block& b : blocks(part)) {
-      std::vector<int> of;
-      for (const auto& [flight, c] : b.readings) of.push_back(flight);
-      for (const Stranger& s : strangers(b.factor, b.of(e), of, limit)) {
-        const int i = b.trials[std::size_t(s.flight)];
-        now.insert(i);
-        const Trial& t = trials_[std::size_t(i)];
-        flags.push_back(
-            {t.row, t.shot.id, channel(b.readings[std::size_t(s.reading)].second).name,
-             fmt::format("nothing explains this flight: {:.1f} standard deviations off", std::sqrt(s.squared)),
-             int(flags.size()) + 1});
-      }
-    }
-  }
-  if (double(now.size()) > std::max(2.0, kMany * double(trials_.size()))) return true;  // no exceptions: not the rows
-  const bool same = now.size() == out_.size();
-  out_ = std::move(now);
-  flags_ = std::move(flags);
-  if (same) return true;
-  std::erase_if(train_, [&](int i) { return out_.contains(i); });
-  std::erase_if(holdout_, [&](int i) { return out_.contains(i); });
-  factor();
-  return false;
-}
-
 double FlightProblem::sigma(int trial, int c) const {
   const Trial& t = trials_[std::size_t(trial)];
   return std::sqrt(std::pow(channel(c).noise, 2) + t.by_own.row(c).cwiseProduct(t.shot.sd.transpose()).squaredNorm() +
@@ -626,6 +584,34 @@ StructureMap FlightProblem::structure(const Fit& fit, const Fit& near, const Eig
   return loop::structure(*this, view, fit, near, regressors_, directions, rules);
 }
 
+/// Winds that are not of the declared size.
+std::vector<Location> FlightProblem::shapes(const Selection&) const {
+  const auto wind = wide_winds();
+  return wind ? std::vector<Location>{*wind} : std::vector<Location>{};
+}
+
+std::vector<Location> FlightProblem::places(const Selection& selection) const {
+  std::vector<Location> all = plainest_places(*this, selection);
+  if (const auto wind = wide_winds()) all.push_back(*wind);
+  return all;
+}
+
+/// Winds of the groups that are beyond what is declared of them.
+std::optional<Location> FlightProblem::wide_winds() const {
+  const double sd = case_.unknown.wind;
+  std::set<int> with_flights;
+  for (const auto* of : {&train_, &holdout_})
+    for (const int i : *of) with_flights.insert(trials_[std::size_t(i)].shot.group);
+  double square = 0, count = 0;
+  for (const int g : with_flights) square += group_[std::size_t(g)].head<2>().squaredNorm(), count += 2;
+  if (!(sd > 0) || !(count > 0) ||
+      square < sd * sd * boost::math::quantile(boost::math::complement(boost::math::chi_squared(count), kByChance)))
+    return {};
+  return Location{"", "",
+                  fmt::format("the winds of the groups are {:.2g} m/s (RMS, each direction), {:.2g} m/s is declared",
+                              std::sqrt(square / count), sd)};
+}
+
 /// The scatter is not what is declared of noise and unknowns, or too many flights are explained by nothing.
 std::vector<Location> FlightProblem::doubts(const Selection& s) const {
   std::vector<Location> told;
@@ -652,14 +638,35 @@ NextExperiment FlightProblem::next_experiment(const LoopResult& so_far) const {
                                 fmt::join(so_far.ties | std::views::join, ", "), sensor),
             .sensor = sensor};
   }
-  if (so_far.verdict == Verdict::unexplained && !so_far.unexplained.empty()) {
-    const Location& l = so_far.unexplained.front();
+  if (so_far.verdict == Verdict::unexplained) {
+    if (!so_far.columns.empty())
+      return {.text = fmt::format("First mend the file or the instrument, then run the loop again: {}",
+                                  so_far.columns.front().text)};
+    const auto l = std::ranges::find_if(so_far.unexplained, [](const Location& x) { return !x.regressor.empty(); });
+    if (l == so_far.unexplained.end())
+      return {
+          .text = fmt::format("Measure the wind beside the flights, and note ball and instrument: {}",
+                              so_far.unexplained.empty() ? "something remains" : so_far.unexplained.front().detail)};
+    const std::string of = l->channel.empty() ? "a reading" : l->channel;
+    if (l->regressor == "constant")
+      return {.text = fmt::format("Check the zero of {} against another instrument: it is off in the mean", of)};
+    const Column* column = case_.shots.find(l->regressor);
+    if (l->regressor == "shot")
+      return {.text = fmt::format(
+                  "Note wind, temperature and ball for every flight: {} follows the order of the flights", of)};
+    if (column && !column->numeric)
+      return {
+          .text = fmt::format("Measure what differs between the values of {} (wind, ground, ball): {} depends on it",
+                              l->regressor, of)};
     return {.text = fmt::format("Measure flights that differ in {} alone, since {} depends on it as no candidate does",
-                                l.regressor.empty() ? "one quantity" : l.regressor,
-                                l.channel.empty() ? "a reading" : l.channel)};
+                                l->regressor, of)};
   }
   if (so_far.verdict == Verdict::insufficient)
     return {.text = "More flights: the list of smallest effects says what these could have shown"};
+  if (so_far.verdict == Verdict::noise_contradicted)
+    return {.text = "Launch a ball ten times alike in still air, to find the instrument's own scatter"};
+  if (so_far.adopted.empty())
+    return {.text = "Nothing is tied. The list of smallest effects says what these flights could have shown"};
   return {.text = "Nothing is tied. Flights at other speeds and spins would narrow the parameters most"};
 }
 
@@ -669,7 +676,20 @@ LoopResult run(const FlightCase& c) {
   result.unused = problem.unused();
   result.forms = problem.forms();
   result.notes = c.notes;
+  std::vector<int> usable;
+  for (const Problem::Row& row : problem.rows()) usable.push_back(row.row);
+  std::ranges::sort(usable);
+  const FlightColumns columns(c, usable);
+  result.columns = columns.beyond_every_name();
+  if (!result.columns.empty())
+    std::erase_if(result.forms, [&](const Parametrisation& f) { return !std::ranges::count(c.effects, f.effect); });
   const Study study(problem, result.forms, c.effects, c.rules, c.told);
+  if (result.columns.empty()) {
+    std::vector<const Fit*> rivals{&study.selection.chosen, &study.selection.richest};
+    for (const Candidate& candidate : study.selection.candidates) rivals.push_back(&candidate.fit);
+    if (rivals.size() > kRivals) rivals.resize(kRivals);
+    result.columns = columns.contradicted(rivals);
+  }
   conclude(study, result);
   return result;
 }

@@ -17,12 +17,18 @@ namespace hosel::loop {
 
 class FlightProblem final : public Problem {
  public:
+  /// The value of the unknowns about which a flight is linear: the likeliest, or as recorded.
+  enum class About { likeliest, record };
   /// Throws DataError where no row holds a launch and a reading of its flight.
-  explicit FlightProblem(const FlightCase& c);
+  explicit FlightProblem(const FlightCase& c, About about = About::likeliest);
+
+  /// The same launches with the readings of another case, whose rows are the same; it refers to this problem's case.
+  FlightProblem with_readings(const FlightCase& c) const;
 
   /// Every form that acts on a flight alone.
   std::vector<Parametrisation> forms() const;
-  const std::map<std::string, int>& unused() const { return unused_; }  ///< reason, rows
+  static constexpr const char* kNoFlight = "no flight from this launch";  ///< a reason
+  const std::map<std::string, int>& unused() const { return unused_; }    ///< reason, rows
 
   int width() const override { return int(channels_.size()); }
   const Channel& channel(int c) const override { return channels_[std::size_t(c)]; }
@@ -50,7 +56,8 @@ class FlightProblem final : public Problem {
 
   StructureMap structure(const Fit& fit, const Fit& near, const Eigen::MatrixXd& directions,
                          const Rules& rules) const override;
-  std::vector<Location> places(const Selection& selection) const override { return plainest_places(*this, selection); }
+  std::vector<Location> places(const Selection& selection) const override;
+  std::vector<Location> shapes(const Selection& selection) const override;
   std::vector<Location> doubts(const Selection& selection) const override;
   NextExperiment next_experiment(const LoopResult& so_far) const override;
 
@@ -83,6 +90,7 @@ class FlightProblem final : public Problem {
   void split();
   void expand(const Model& model, const Eigen::VectorXd& p);
   void slopes(const Model& model, const Eigen::VectorXd& p);
+  void slopes(Trial& t, const GroupUnknowns& group, const Model& model, const Eigen::VectorXd& p) const;
   std::vector<Block> blocks(const std::vector<int>& trials) const;
   void factor();
   /// Header's units; NaN: the shot has no such flight.
@@ -93,6 +101,8 @@ class FlightProblem final : public Problem {
   const std::vector<int>& trials(Part part) const { return part == Part::holdout ? holdout_ : train_; }
   const std::vector<Block>& blocks(Part part) const { return part == Part::holdout ? held_blocks_ : train_blocks_; }
   Eigen::VectorXd whiten(Part part, const Eigen::MatrixXd& e) const;
+  std::optional<std::pair<std::string, std::string>> slip_of(int trial, const Fit& at) const;
+  std::optional<Location> wide_winds() const;
   void estimate_noise(const Fit* at);
   GroupUnknowns group_sd() const { return {case_.unknown.wind, case_.unknown.wind, case_.unknown.slope}; }
 

@@ -43,8 +43,8 @@ double level(const HistoryProblem& problem, const Eigen::VectorXd& z, int channe
     std::vector<double> x(std::size_t(rows), 0.0);
     double n = 0;
     for (std::ptrdiff_t i = 0; i < rows; ++i) {
-      x[std::size_t(i)] = z[at + channel * rows + i];
-      n += x[std::size_t(i)] != 0;
+      x[i] = z[at + channel * rows + i];
+      n += x[i] != 0;
     }
     at += record.measured.size();
     if (n < kFewestInRow) continue;
@@ -92,7 +92,7 @@ Colour colour(const HistoryProblem& problem, const Eigen::MatrixXd& residuals, i
     };
     for (std::ptrdiff_t i = 0; i < record.measured.rows(); ++i) {
       const double x = residuals(first + i, channel);
-      if (record.train[std::size_t(i)] && std::isfinite(x)) {
+      if (record.train[i] && std::isfinite(x)) {
         run.push_back(x);
         square += x * x;
         ++count;
@@ -113,7 +113,7 @@ Colour colour(const HistoryProblem& problem, const Eigen::MatrixXd& residuals, i
     const double middle = median(level);
     double spread = 0;
     for (const double l : level) spread += std::abs(l - middle);
-    if (spread < least * (1 - 1e-3)) {  // colour only where it helps
+    if (spread < least * (1 - kNothing)) {  // colour only where it helps
       least = spread;
       // The median of an exponential variate of mean one is ln 2.
       best = {std::sqrt(std::exp(middle) / std::numbers::ln2), rho, count};
@@ -156,15 +156,15 @@ StructureMap history_structure(const HistoryProblem& problem, const Eigen::Vecto
       for (std::ptrdiff_t i = 0; i < rows; ++i)
         if (z[first + i] != 0) {
           ++here;
-          middle += record.times[std::size_t(i)];
+          middle += record.times[i];
         }
       if (here < kFewestInRow) continue;
       middle /= here;
       for (std::ptrdiff_t i = 0; i < rows; ++i) {
         const double v = z[first + i] / scale;
-        x[std::size_t(i)] = v;
+        x[i] = v;
         if (v == 0) continue;
-        const double t = record.times[std::size_t(i)] - middle;
+        const double t = record.times[i] - middle;
         sum += v;
         slope += v * t;
         time2 += t * t;
@@ -181,7 +181,7 @@ StructureMap history_structure(const HistoryProblem& problem, const Eigen::Vecto
       for (std::size_t k = 0; k < I.size(); ++k) {
         const double f = double(k + 1) / (double(size) * step);
         if (I[k] > peak.power) peak = {I[k], f};
-        const auto b = std::min<std::size_t>(23, std::size_t(std::log2(double(k + 1))));
+        const auto b = std::min(band.size() - 1, std::size_t(std::log2(double(k + 1))));
         band[b] += I[k];
         ++band_count[b];
       }

@@ -11,12 +11,12 @@
 #include "golf/dense.hpp"
 #include "loop/deviation.hpp"
 #include "loop/history/noise.hpp"
+#include "loop/rules.hpp"
 #include "solvers/random.hpp"
 
 namespace hosel::loop {
 namespace {
 
-constexpr double kStep = 1e-3;       // of a parameter's scale
 constexpr int kFewestReadings = 24;  // training readings that can test anything
 
 /// Scatter of a channel by third differences, which a smooth motion leaves small: a first idea of the noise.
@@ -46,7 +46,7 @@ HistoryProblem::HistoryProblem(const HistoryModel& model, const HistorySetting& 
     samples += r.measured.rows();
   }
   for (int c = 0; c < width(); ++c) {
-    HistoryChannel& ch = setting_.channels[std::size_t(c)];
+    HistoryChannel& ch = setting_.channels[c];
     ch.noise = ch.declared ? *ch.declared : std::max(rough_noise(records_, c), ch.least_noise());
   }
   split(how);
@@ -124,8 +124,8 @@ double HistoryProblem::whiten(const HistoryRecord& record, const Eigen::MatrixXd
     const double one = 1 / ch.noise, rho = ch.colour, next = one / std::sqrt(1 - rho * rho);
     bool before = false;
     for (std::ptrdiff_t i = 0; i < n; ++i) {
-      const bool here = std::isfinite(record.measured(i, c)) && (record.train[std::size_t(i)] != 0) == train &&
-                        record.times[std::size_t(i)] <= last;
+      const bool here = std::isfinite(record.measured(i, c)) && (record.train[i] != 0) == train &&
+                        record.times[i] <= last;
       out[c * n + i] = !here ? 0 : before ? next * (column(i, c) - rho * column(i - 1, c)) : one * column(i, c);
       if (here) logarithms += std::log(before ? next : one);
       before = here;
@@ -137,7 +137,7 @@ double HistoryProblem::whiten(const HistoryRecord& record, const Eigen::MatrixXd
 bool HistoryProblem::solve(const Model& model, const Eigen::VectorXd& p, double window, Solution& out,
                            Eigen::VectorXd* z) const {
   TestSetup setup(setting_.channels.size());
-  model.each(p.data(), [&](const Parametrisation& f, std::span<const double> q) { f.setup(q, setup); });
+  model.each(p.data(), [&](const Parametrisation& f, Sizes q) { f.setup(q, setup); });
   if (!model_.answer(setup, out.answers)) return false;
   if (z) z->resize(measured_.size());
   out.unknowns.assign(records_.size(), {});
@@ -147,8 +147,8 @@ bool HistoryProblem::solve(const Model& model, const Eigen::VectorXd& p, double 
     Prediction& a = out.answers[r];
     const auto size = record.measured.size();
     for (std::ptrdiff_t c = 0; c < record.measured.cols(); ++c) {
-      const double gain = 1 + setup.gain[std::size_t(c)], si = channel(int(c)).si;
-      a.value.col(c) = (gain * a.value.col(c).array() + setup.offset[std::size_t(c)]) / si;
+      const double gain = 1 + setup.gain[c], si = channel(int(c)).si;
+      a.value.col(c) = (gain * a.value.col(c).array() + setup.offset[c]) / si;
       for (Eigen::MatrixXd& u : a.unknown) u.col(c) *= gain / si;
     }
     if (!a.unknown.empty())  // where the start is unknown, so is every zero
@@ -164,7 +164,7 @@ bool HistoryProblem::solve(const Model& model, const Eigen::VectorXd& p, double 
         whiten(record, a.unknown[k], true, window, U.col(std::ptrdiff_t(k)).data());
       Eigen::VectorXd norm = U.colwise().norm();
       // What the channels show of a mode of the other plane is round-off, and no unknown.
-      const double faint = 1e-6 * norm.maxCoeff();
+      const double faint = kFaint * norm.maxCoeff();
       for (std::ptrdiff_t k = 0; k < U.cols(); ++k) {
         if (norm[k] > faint) U.col(k) /= norm[k];
         else U.col(k).setZero(), norm[k] = 1;
@@ -302,16 +302,16 @@ bool HistoryProblem::screen(const Selection& selection) {
         if (std::isfinite(here(i))) size.push_back(std::abs(here(i)));
       const double scale = std::max(robust_deviation(size), channel(c).noise);
       for (Eigen::Index i = 0; i < rows; ++i) {
-        if (!(std::abs(here(i)) > 7 * scale)) continue;
+        if (!(std::abs(here(i)) > kFar * scale)) continue;
         const auto beside = [&](Eigen::Index k) {
           return k < 0 || k >= rows || !std::isfinite(here(k)) ? 0.0 : here(k);
         };
         // A motion moves its neighbours too; two readings in a row may fail together.
         if (std::abs(here(i) - 0.5 * (beside(i - 2) + beside(i + 2))) < 6 * scale) continue;
-        flags_.push_back({int(first + i), fmt::format("{}", first + i + 1), channel(c).name,
-                          fmt::format("stands alone: {:.3g} off at {:.6g} s in {}", -here(i),
-                                      record.times[std::size_t(i)], record.name),
-                          int(flags_.size()) + 1});
+        flags_.push_back(
+            {int(first + i), fmt::format("{}", first + i + 1), channel(c).name,
+             fmt::format("stands alone: {:.3g} off at {:.6g} s in {}", -here(i), record.times[i], record.name),
+             int(flags_.size()) + 1});
         record.measured(i, c) = measured_(first + i, c) = kNaN;
       }
     }
@@ -330,7 +330,7 @@ double HistoryProblem::update_noise(const Fit&, const Fit& richest) {
   const Eigen::MatrixXd e = residuals(richest.model, richest.p);
   double change = 0;
   for (int c = 0; c < width() && e.size(); ++c) {
-    HistoryChannel& ch = setting_.channels[std::size_t(c)];
+    HistoryChannel& ch = setting_.channels[c];
     Colour noise = colour(*this, e, c, false);
     if (noise.rho < 0.06) noise = colour(*this, e, c, true);
     const double sigma = std::max(ch.trusted() ? *ch.declared : noise.sigma, ch.least_noise());

@@ -27,8 +27,8 @@ class HistoryProblem final : public Problem {
   const std::vector<HistoryRecord>& records() const { return records_; }
 
   int width() const override { return int(setting_.channels.size()); }
-  const HistoryChannel& channel(int c) const override { return setting_.channels[std::size_t(c)]; }
-  void refute(int c, bool refuted) override { setting_.channels[std::size_t(c)].refute(refuted); }
+  const HistoryChannel& channel(int c) const override { return setting_.channels[c]; }
+  void refute(int c, bool refuted) override { setting_.channels[c].refute(refuted); }
   std::vector<Row> rows() const override;
   const Eigen::MatrixXd& measured() const override { return measured_; }
   std::vector<Flag> flags() const override { return flags_; }

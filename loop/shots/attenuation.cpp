@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "loop/fit.hpp"
+#include "loop/rules.hpp"
 
 namespace hosel::loop {
 namespace {
@@ -20,11 +21,11 @@ struct Change {
 
 /// Absent where it changes no input, or several.
 std::optional<Change> change(const ShotModel& model, const std::vector<int>& rows, const Parametrisation& form,
-                             std::span<const double> p) {
+                             Sizes p) {
   const auto n = Eigen::Index(rows.size());
   Eigen::MatrixXd x(n, kInputs), by(n, kInputs);
   for (Eigen::Index i = 0; i < n; ++i) {
-    Shot shot = model.trial(rows[std::size_t(i)]);
+    Shot shot = model.trial(rows[i]);
     for (int k = 0; k < kInputs; ++k) x(i, k) = get(shot.blow, Input(k));
     form.before(p, shot);
     for (int k = 0; k < kInputs; ++k) by(i, k) = get(shot.blow, Input(k)) - x(i, k);
@@ -46,7 +47,7 @@ std::vector<Attenuation> attenuations(const ShotModel& model, const Shots& shots
                                       const Fit& fit, const Eigen::MatrixXd& covariance) {
   std::vector<Attenuation> told;
   Eigen::Index at = 0;
-  fit.model.each(fit.p.data(), [&](const Parametrisation& form, std::span<const double> p) {
+  fit.model.each(fit.p.data(), [&](const Parametrisation& form, Sizes p) {
     const auto n = Eigen::Index(p.size());
     const Eigen::Index first = std::exchange(at, at + n);
     if (!form.before) return;
@@ -56,7 +57,7 @@ std::vector<Attenuation> attenuations(const ShotModel& model, const Shots& shots
     Eigen::VectorXd gradient = Eigen::VectorXd::Zero(n);
     std::vector<double> moved(p.begin(), p.end());
     for (std::size_t k = 0; k < moved.size(); ++k) {
-      const double step = 0.01 * form.parameters[k].scale;
+      const double step = kCoarseStep * form.parameters[k].scale;
       moved[k] += step;
       if (const auto other = change(model, rows, form, moved))
         gradient[Eigen::Index(k)] = (other->mean - c->mean) / step;

@@ -22,13 +22,9 @@ struct Term {
   char how = ' ';  ///< ' ', '/', '*'
 };
 
-struct Source {
-  const Column* column;
-  Eigen::VectorXd x;  ///< SI, so that no formula hangs on a unit; NaN where missing
-  double resolution;  ///< SI
-  double noise;       ///< declared, SI; 0: none
-  double spread;
-  bool fine;  ///< enough different values to show a formula with free numbers
+struct Source : FormulaColumn {
+  double noise;  ///< declared, SI; 0: none
+  bool fine;     ///< enough different values to show a formula with free numbers
 };
 
 /// Its value where `of` gives that of a source by its number.
@@ -39,18 +35,18 @@ double evaluate(const Term& f, const auto& of) {
 }
 
 double evaluate(const Term& f, const std::vector<Source>& s, Eigen::Index i) {
-  return evaluate(f, [&](int k) { return s[std::size_t(k)].x[i]; });
+  return evaluate(f, [&](int k) { return s[k].x[i]; });
 }
 
 /// What one of a term in the units of its headers is in SI.
 double term_unit(const Term& f, const std::vector<Source>& s) {
-  return evaluate(f, [&](int k) { return s[std::size_t(k)].column->si; });
+  return evaluate(f, [&](int k) { return s[k].column->si; });
 }
 
 std::string term_name(const Term& f, const std::vector<Source>& s) {
-  const std::string& a = s[std::size_t(f.a)].column->name;
+  const std::string& a = s[f.a].column->name;
   if (f.how == ' ') return a;
-  return fmt::format("{} {} {}", a, f.how, s[std::size_t(f.b)].column->name);
+  return fmt::format("{} {} {}", a, f.how, s[f.b].column->name);
 }
 
 constexpr double kOutsideEdge = 2 * kBeyondChance;  // price of a row outside, as a deviance
@@ -128,28 +124,12 @@ class Audit {
     std::vector<std::size_t> rows;
     const std::vector<std::size_t> sorted = rows_by_value(shots);
     for (std::size_t i = 0; i < sorted.size(); i += step) rows.push_back(sorted[i]);
-    for (const Column& c : shots.columns) {
-      if (!c.numeric || c.role == Role::bookkeeping) continue;
-      const auto declared = noise.find(c.name);
-      Source s{&c,
-               Eigen::VectorXd(std::ptrdiff_t(rows.size())),
-               c.resolution,
-               declared == noise.end() ? 0 : declared->second * c.si,
-               0,
-               false};
-      std::vector<double> seen;
-      for (std::size_t k = 0; k < rows.size(); ++k) {
-        s.x[std::ptrdiff_t(k)] = c.value[rows[k]];
-        if (std::isfinite(c.value[rows[k]])) seen.push_back(s.x[std::ptrdiff_t(k)]);
-      }
-      if (seen.size() < kFewestRows) continue;
-      std::ranges::sort(seen);
-      const std::set<double> different(seen.begin(), seen.end());
-      if (different.size() < 4) continue;
-      s.spread = at_share(seen, 0.9) - at_share(seen, 0.1);
-      if (!(s.spread > 0)) continue;
-      s.fine = different.size() >= kFewestDifferent;
-      sources_.push_back(std::move(s));
+    for (FormulaColumn& c : formula_columns(shots, rows, kFewestRows)) {
+      const std::size_t different = std::set<double>(c.rising.begin(), c.rising.end()).size();
+      if (different < 4 || !(c.spread() > 0)) continue;
+      const auto declared = noise.find(c.column->name);
+      const double own = declared == noise.end() ? 0 : declared->second * c.column->si;
+      sources_.push_back({std::move(c), own, different >= kFewestDifferent});
     }
   }
 
@@ -168,7 +148,7 @@ class Audit {
       for (int target = 0; target < int(sources_.size()); ++target) {
         const Source& y = source(target);
         const bool part = y.column->stem == "backspin" || y.column->stem == "sidespin";
-        if (part != component || y.spread < 3 * y.resolution) continue;
+        if (part != component || y.spread() < 3 * y.step()) continue;
         Formula f;
         if (identity(target, sources_for(target, gone, false), f)) accept(target, f);
       }
@@ -181,7 +161,7 @@ class Audit {
         const Source& y = source(target);
         best.erase(target);
         // Coarse columns cannot show a formula with free numbers.
-        if (gone.contains(target) || !y.fine || y.spread < 12 * y.resolution) continue;
+        if (gone.contains(target) || !y.fine || y.spread() < 12 * y.step()) continue;
         if (Formula f; search(target, sources_for(target, gone, true), f)) best[target] = f;
       }
       if (best.empty()) return found;
@@ -210,16 +190,12 @@ class Audit {
     return use;
   }
 
-  const Source& source(int k) const { return sources_[std::size_t(k)]; }
+  const Source& source(int k) const { return sources_[k]; }
   int rank(int k) const { return rank_if_computed(*source(k).column); }
 
-  /// Keeps its sign and stays away from zero: the bulk lies within a factor of about eight.
   bool divides(int k) const {
-    std::vector<double> v;
-    for (const double x : source(k).x)
-      if (std::isfinite(x)) v.push_back(x);
-    const auto [low, high] = bulk(std::move(v));
-    return low * high > 0 && std::max(std::abs(low), std::abs(high)) < 8 * std::min(std::abs(low), std::abs(high));
+    const auto [low, high] = bulk(source(k).rising);
+    return may_divide(low, high);
   }
 
   int of(std::string_view stem, const std::vector<int>& use) const {
@@ -259,28 +235,28 @@ class Audit {
     if (rows.empty()) return false;
     std::vector<double> residual, edges, wobbles, noises, uneven, x(sources_.size());
     for (const Eigen::Index i : rows) {
-      for (const int k : from) x[std::size_t(k)] = source(k).x[i];
+      for (const int k : from) x[k] = source(k).x[i];
       residual.push_back(y.x[i] - f(x));
     }
     out.residual = trimmed_rms(residual);
     // More than the largest tolerance below allows: most formulas end here.
     const double finer = parameters ? 12 : 6;
-    if (!(out.residual < (1.6 / finer + 2e-9) * y.spread)) return false;
+    if (!(out.residual < (1.6 / finer + 2e-9) * y.spread())) return false;
     for (const Eigen::Index i : rows) {
-      for (const int k : from) x[std::size_t(k)] = source(k).x[i];
+      for (const int k : from) x[k] = source(k).x[i];
       const auto variance_by = [&](int k, double deviation) {
-        const double at = x[std::size_t(k)];
-        x[std::size_t(k)] = at + deviation;
+        const double at = x[k];
+        x[k] = at + deviation;
         const double up = f(x);
-        x[std::size_t(k)] = at - deviation;
-        const double change = 0.5 * (up - f(x));
-        x[std::size_t(k)] = at;
+        x[k] = at - deviation;
+        const double change = (up - f(x)) / 2;
+        x[k] = at;
         return change * change;
       };
-      double wobble = std::pow(rounding_deviation(y.resolution), 2), squares = wobble * wobble,
-             noise = y.noise * y.noise, outermost = 0.5 * y.resolution;
+      double wobble = std::pow(rounding_deviation(y.step()), 2), squares = wobble * wobble, noise = y.noise * y.noise,
+             outermost = 0.5 * y.step();
       for (const int k : from) {
-        const double by = variance_by(k, rounding_deviation(source(k).resolution));
+        const double by = variance_by(k, rounding_deviation(source(k).step()));
         outermost += std::sqrt(3 * by);
         wobble += by;
         squares += by * by;
@@ -297,20 +273,20 @@ class Audit {
     out.declared = std::sqrt(median(std::move(noises)));
     const double share = median(std::move(uneven));
     out.trimmed = kTrimmedNoise + (kTrimmedRounding - kTrimmedNoise) * share;
-    out.one_rounds = y.column->role != Role::other && share > 0.8;
+    out.one_rounds = y.column->role != Role::other && share > kNearlyAll;
     out.from = from;
     // The numbers of the formula are fitted: the edge is not sharper than they are.
-    const double fitted = kRoundOff * y.spread + 2 * out.residual * std::sqrt(parameters / double(rows.size()));
+    const double fitted = kRoundOff * y.spread() + 2 * out.residual * std::sqrt(parameters / double(rows.size()));
     for (std::size_t i = 0; i < rows.size(); ++i) {
       const double outermost = edges[i] + fitted, miss = std::abs(residual[i]);
       out.outside += miss > outermost && miss < 4 * outermost;
     }
-    const double edge = 0.5 * y.resolution + fitted;
+    const double edge = y.step() / 2 + fitted;
     out.beyond = int(std::ranges::count_if(
         residual, [&](double r) { return std::abs(r) > edge && std::abs(r) < 4 * out.tolerance; }));
     // Within rounding, and rounding itself far below how the column varies: the less so, the fewer numbers are free.
-    return out.residual < most_by_rounding(out, rows.size()) * out.tolerance + kRoundOff * y.spread &&
-           out.tolerance * finer < y.spread;
+    return out.residual < most_by_rounding(out, rows.size()) * out.tolerance + kRoundOff * y.spread() &&
+           out.tolerance * finer < y.spread();
   }
 
   std::vector<Eigen::Index> complete(int target, const std::set<int>& from) const {
@@ -327,7 +303,7 @@ class Audit {
   bool identity(int target, const std::vector<int>& use, Formula& best) const {
     const Column& y = *source(target).column;
     // `given`: columns state the same twice, whatever is declared of their noise.
-    const double spread = source(target).spread;
+    const double spread = source(target).spread();
     const auto attempt = [&](const std::set<int>& from, bool given, std::string text, auto f) {
       const auto rows = complete(target, from);
       if (rows.size() < kFewestRows) return false;
@@ -342,7 +318,7 @@ class Audit {
     for (const Identity& i : kIdentities) {
       const int a = of(i.a, use), b = of(i.b, use);
       if ((i.of.empty() ? y.role == Role::other : y.stem == i.of) && a >= 0 && b >= 0 &&
-          attempt({a, b}, true, i.text, [&](V x) { return i.value(x[std::size_t(a)], x[std::size_t(b)]); }))
+          attempt({a, b}, true, i.text, [&](V x) { return i.value(x[a], x[b]); }))
         return true;
     }
     const int back = of("backspin", use), rate = of("spin_rate", use), launch = of("launch_angle", use),
@@ -353,8 +329,8 @@ class Audit {
       if (attempt({launch, speed, spin}, false,
                   fmt::format("launch angle + asin({:.4g} m * spin / ball speed): the loft of a rolling ball", arm),
                   [&](V x) {
-                    const double rim = arm * x[std::size_t(spin)] / x[std::size_t(speed)];
-                    return x[std::size_t(launch)] + std::asin(std::clamp(rim, -1.0, 1.0));
+                    const double rim = arm * x[spin] / x[speed];
+                    return x[launch] + std::asin(std::clamp(rim, -1.0, 1.0));
                   }))
         return true;
     }
@@ -393,9 +369,8 @@ class Audit {
       Eigen::VectorXd b(n);
       for (std::ptrdiff_t i = 0; i < n; ++i) {
         A(i, 0) = 1;
-        for (std::ptrdiff_t j = 1; j < p; ++j)
-          A(i, j) = transform(evaluate(features[std::size_t(j - 1)], sources_, fitted[std::size_t(i)]));
-        b[i] = transform(y.x[fitted[std::size_t(i)]]);
+        for (std::ptrdiff_t j = 1; j < p; ++j) A(i, j) = transform(evaluate(features[j - 1], sources_, fitted[i]));
+        b[i] = transform(y.x[fitted[i]]);
       }
       if (!A.allFinite() || !b.allFinite()) return false;
       Eigen::VectorXd unit = A.colwise().norm().transpose();
@@ -423,7 +398,7 @@ class Audit {
       const auto f = [&](const std::vector<double>& x) {
         double sum = c[0];
         for (std::ptrdiff_t j = 1; j < p; ++j)
-          sum += c[j] * transform(evaluate(features[std::size_t(j - 1)], [&](int k) { return x[std::size_t(k)]; }));
+          sum += c[j] * transform(evaluate(features[j - 1], [&](int k) { return x[k]; }));
         return logarithmic ? std::exp(sum) : sum;
       };
       // It must hold on the rows that it was fitted to as well: the fence could leave out those that it missed.
@@ -431,32 +406,30 @@ class Audit {
       if (!judge(target, from, int(p), judged, f, out) || !judge(target, from, int(p), fitted, f, again)) return false;
       out.outside += again.outside;
       if (!(std::hypot(out.residual, again.residual) <
-            std::sqrt(2.0) * most_by_rounding(out, rows.size()) * out.tolerance + kRoundOff * y.spread) ||
-          !rounding_alone(out, rows.size(), y.spread))
+            std::sqrt(2.0) * most_by_rounding(out, rows.size()) * out.tolerance + kRoundOff * y.spread()) ||
+          !rounding_alone(out, rows.size(), y.spread()))
         return false;
       // Every term must matter: a source that could be left out is no source.
       for (std::ptrdiff_t j = 1; j < p; ++j) {
-        const auto [lo, hi] = range_of(judged, [&](Eigen::Index i) {
-          return c[j] * transform(evaluate(features[std::size_t(j - 1)], sources_, i));
-        });
+        const auto [lo, hi] =
+            range_of(judged, [&](Eigen::Index i) { return c[j] * transform(evaluate(features[j - 1], sources_, i)); });
         const double scale = logarithmic ? y.x.cwiseAbs().maxCoeff() : 1;
         if ((hi - lo) * scale < 4 * out.tolerance) return false;
       }
       out.rows = int(rows.size());
       // Numbers as they stand in the units of the headers.
-      const auto unit_of = [&](std::ptrdiff_t j) { return term_unit(features[std::size_t(j - 1)], sources_); };
+      const auto unit_of = [&](std::ptrdiff_t j) { return term_unit(features[j - 1], sources_); };
       const double own_unit = y.column->si;
       if (logarithmic) {
         double number = std::exp(c[0]) / own_unit;
         for (std::ptrdiff_t j = 1; j < p; ++j) number *= std::pow(unit_of(j), c[j]);
         out.text = fmt::format("{:.5g}", number);
         for (std::ptrdiff_t j = 1; j < p; ++j)
-          out.text += fmt::format(" * ({})^{:.4g}", term_name(features[std::size_t(j - 1)], sources_), c[j]);
+          out.text += fmt::format(" * ({})^{:.4g}", term_name(features[j - 1], sources_), c[j]);
       } else {
         out.text = fmt::format("{:.5g}", c[0] / own_unit);
         for (std::ptrdiff_t j = 1; j < p; ++j)
-          out.text += fmt::format(" {:+.5g} * {}", c[j] * unit_of(j) / own_unit,
-                                  term_name(features[std::size_t(j - 1)], sources_));
+          out.text += fmt::format(" {:+.5g} * {}", c[j] * unit_of(j) / own_unit, term_name(features[j - 1], sources_));
       }
       // Few rows do not part formulas whose sources go together (club speed and ball speed): then the simpler one is
       // taken, and for an input one of outputs alone, since an instrument computes what it does not see from what it
@@ -464,8 +437,8 @@ class Audit {
       const bool seen = y.column->role == Role::input &&
                         std::ranges::all_of(from, [&](int k) { return source(k).column->role == Role::output; });
       const auto composite = std::ranges::count_if(features, [](const Term& g) { return g.b >= 0; });
-      const double own = rounding_deviation(y.resolution) + kRoundOff * y.spread;
-      const double all_rounding = out.tolerance + kRoundOff * y.spread,
+      const double own = rounding_deviation(y.step()) + kRoundOff * y.spread();
+      const double all_rounding = out.tolerance + kRoundOff * y.spread(),
                    share = std::pow(out.residual / all_rounding, 2), terms = 6 * double(p + composite - seen),
                    n_judged = double(judged.size());
       out.cost = n_judged * (share - 1 + 2 * std::log(std::max(1.0, out.residual / own))) + terms;
@@ -526,7 +499,7 @@ class Audit {
     const auto n = std::ptrdiff_t(rows.size());
     const auto ranks = [&](auto&& value) {
       Eigen::VectorXd v(n);
-      for (std::ptrdiff_t i = 0; i < n; ++i) v[i] = value(rows[std::size_t(i)]);
+      for (std::ptrdiff_t i = 0; i < n; ++i) v[i] = value(rows[i]);
       const auto [lo, hi] = bulk({v.data(), v.data() + n});
       v = v.cwiseMax(lo).cwiseMin(hi);  // bad rows drawn in
       v.array() -= v.mean();
@@ -551,7 +524,7 @@ class Audit {
     for (std::size_t i = 0; i < columns.size(); ++i)
       for (std::size_t j = i + 1; j < columns.size(); ++j) {
         const double g = G(std::ptrdiff_t(i), std::ptrdiff_t(j)), det = 1 - g * g;
-        if (det < 1e-6) continue;
+        if (det < kFaint) continue;
         const double bi = b[std::ptrdiff_t(i)], bj = b[std::ptrdiff_t(j)];
         const double r2 = (bi * bi + bj * bj - 2 * g * bi * bj) / det;
         if (r2 > 0.9) good.push_back({r2, i, j});
@@ -565,6 +538,28 @@ class Audit {
 };
 
 }  // namespace
+
+std::vector<FormulaColumn> formula_columns(const Shots& shots, const std::vector<std::size_t>& rows,
+                                           std::size_t fewest) {
+  std::vector<FormulaColumn> all;
+  for (const Column& c : shots.columns) {
+    if (!c.numeric || c.role == Role::bookkeeping) continue;
+    FormulaColumn f{&c, Eigen::VectorXd(Eigen::Index(rows.size())), {}};
+    for (std::size_t k = 0; k < rows.size(); ++k) {
+      const double x = f.x[Eigen::Index(k)] = c.value[rows[k]];
+      if (std::isfinite(x)) f.rising.push_back(x);
+    }
+    if (f.rising.size() < fewest) continue;
+    std::ranges::sort(f.rising);
+    all.push_back(std::move(f));
+  }
+  return all;
+}
+
+bool may_divide(double low, double high) {
+  constexpr double factor = 8;  // between them, about
+  return low * high > 0 && std::max(std::abs(low), std::abs(high)) < factor * std::min(std::abs(low), std::abs(high));
+}
 
 int rank_if_computed(const Column& c) {
   if (c.role == Role::other) return 0;

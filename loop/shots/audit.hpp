@@ -1,11 +1,13 @@
 /// Derived columns: columns that are functions of other columns to within their recording step.
 #pragma once
 
+#include <Eigen/Core>
 #include <map>
 #include <set>
 #include <string>
 #include <vector>
 
+#include "loop/deviation.hpp"
 #include "loop/shots/shots.hpp"
 
 namespace hosel::loop {
@@ -31,6 +33,20 @@ std::set<int> set_with(const auto& columns, int more) {
   all.insert(more);
   return all;
 }
+/// A numeric column over some rows, as a formula sees it.
+struct FormulaColumn {
+  const Column* column;
+  Eigen::VectorXd x;           ///< SI, so that no formula hangs on a unit; NaN where missing
+  std::vector<double> rising;  ///< those that are there
+
+  double step() const { return column->resolution; }  ///< of the recording, SI
+  double spread() const { return at_share(rising, 0.9) - at_share(rising, 0.1); }
+};
+/// Those with a value on at least `fewest` of the rows.
+std::vector<FormulaColumn> formula_columns(const Shots& shots, const std::vector<std::size_t>& rows,
+                                           std::size_t fewest);
+/// Whether the bulk of a column, between these values, keeps its sign and stays away from zero.
+bool may_divide(double low, double high);
 /// What an instrument is likely to compute: unknown columns, inputs (the loft before the others), spin, the rest.
 int rank_if_computed(const Column& c);
 

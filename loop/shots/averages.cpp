@@ -10,8 +10,6 @@
 namespace hosel::loop {
 namespace {
 
-constexpr double kFar = 7;  // robust deviations: one reading in some 10^10 of a normal scatter
-
 /// Place of a column in `Averages::scatter`; -1: none.
 int place(const Column& c) {
   if (c.role == Role::input) return int(*input_of(c.stem));
@@ -25,14 +23,14 @@ void leave_out(Column& c, const std::vector<std::vector<int>>& rows_of, const Sh
   for (const std::vector<int>& rows : rows_of) {
     std::vector<double> x;
     for (const int i : rows)
-      if (const double v = c.value[std::size_t(i)]; std::isfinite(v)) {
+      if (const double v = c.value[i]; std::isfinite(v)) {
         for (const double other : x) differences.push_back(std::abs(v - other));
         x.push_back(v);
       }
     if (x.size() < 3) continue;  // of two, which?
     const double middle = median(x);
     for (const int i : rows)
-      if (const double v = c.value[std::size_t(i)]; std::isfinite(v)) off[std::size_t(i)] = v - middle;
+      if (const double v = c.value[i]; std::isfinite(v)) off[i] = v - middle;
   }
   const double deviation = std::max(robust_deviation(differences) / std::sqrt(2.0), c.resolution);
   for (std::size_t i = 0; i < off.size() && deviation > 0; ++i)
@@ -52,7 +50,7 @@ std::pair<Shots, Averages> average(Shots shots, const std::string& by) {
   const Groups g = groups(*key);
   std::vector<std::vector<int>> rows_of(g.name.size());
   for (std::size_t i = 0; i < g.of_row.size(); ++i)
-    if (g.of_row[i] >= 0) rows_of[std::size_t(g.of_row[i])].push_back(int(i));
+    if (g.of_row[i] >= 0) rows_of[g.of_row[i]].push_back(int(i));
 
   Averages out;
   out.by = by;
@@ -63,7 +61,7 @@ std::pair<Shots, Averages> average(Shots shots, const std::string& by) {
     out.notes.push_back(fmt::format("{} rows without a {}: part of no mean", lost, by));
   means.file = single.file;
   means.id = g.name;
-  for (const std::vector<int>& rows : rows_of) means.line.push_back(single.line[std::size_t(rows.front())]);
+  for (const std::vector<int>& rows : rows_of) means.line.push_back(single.line[rows.front()]);
 
   const auto n = Eigen::Index(single.rows());
   Eigen::MatrixXd deviation = Eigen::MatrixXd::Zero(n, kInputs + kOutputs);
@@ -76,8 +74,8 @@ std::pair<Shots, Averages> average(Shots shots, const std::string& by) {
     if (!read.numeric) {
       mean.text.clear();
       for (const std::vector<int>& rows : rows_of) {
-        const std::string& first = read.text[std::size_t(rows.front())];
-        const bool one = std::ranges::all_of(rows, [&](int i) { return read.text[std::size_t(i)] == first; });
+        const std::string& first = read.text[rows.front()];
+        const bool one = std::ranges::all_of(rows, [&](int i) { return read.text[i] == first; });
         mean.text.push_back(one ? first : "");
       }
       means.columns.push_back(std::move(mean));
@@ -91,13 +89,13 @@ std::pair<Shots, Averages> average(Shots shots, const std::string& by) {
       double sum = 0;
       int count = 0;
       for (const int i : rows_of[k])
-        if (const double x = clean.value[std::size_t(i)]; std::isfinite(x)) sum += x, ++count;
+        if (const double x = clean.value[i]; std::isfinite(x)) sum += x, ++count;
       mean.value.push_back(count ? sum / count : kNaN);
       if (read.role == Role::output) out.count[k] = std::min(out.count[k], count);
       for (const int i : rows_of[k]) {
         if (at < 0) continue;
-        deviation(i, at) = clean.value[std::size_t(i)] - mean.value.back();
-        if (std::isnan(deviation(i, at))) whole[std::size_t(i)] = 0;
+        deviation(i, at) = clean.value[i] - mean.value.back();
+        if (std::isnan(deviation(i, at))) whole[i] = 0;
       }
     }
     means.columns.push_back(std::move(mean));
@@ -111,11 +109,11 @@ std::pair<Shots, Averages> average(Shots shots, const std::string& by) {
     int here = 0;
     Eigen::VectorXd middle = Eigen::VectorXd::Zero(deviation.cols());
     for (const int i : rows)
-      if (whole[std::size_t(i)]) middle += deviation.row(i).transpose(), ++here;
+      if (whole[i]) middle += deviation.row(i).transpose(), ++here;
     if (here < 2) continue;
     middle /= here;
     for (const int i : rows) {
-      if (!whole[std::size_t(i)]) continue;
+      if (!whole[i]) continue;
       const Eigen::VectorXd d = deviation.row(i).transpose() - middle;
       out.scatter += d * d.transpose();
     }

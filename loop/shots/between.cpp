@@ -60,8 +60,7 @@ Means means(const Eigen::MatrixXd& z, const Eigen::MatrixXd& j, const Eigen::Vec
                         pull = -w.cwiseProduct(z.cwiseProduct(j).colwise().sum().transpose());
   const auto each = [&](const auto& act) {
     for (Eigen::Index i = 0; i < z.cols(); ++i)
-      if (const int g = group[std::size_t(i)]; g >= 0 && precision[i] > 0)
-        act(of[std::size_t(g)], precision[i], pull[i]);
+      if (const int g = group[i]; g >= 0 && precision[i] > 0) act(of[g], precision[i], pull[i]);
   };
   each([](Sums& s, double p, double b) { s.precision += p, s.pull += b, ++s.shots; });
   each([](Sums& s, double p, double b) { s.square += std::pow(b - p * s.pull / s.precision, 2) / p; });
@@ -93,7 +92,7 @@ std::vector<Grouping> by_columns(const Shots& shots, const std::vector<int>& row
     if (c.role == Role::output || (c.numeric && c.name != by)) continue;
     const Groups g = groups(c);
     Grouping own{c.name, {}, int(g.name.size())};
-    for (const int i : rows) own.of.push_back(g.of_row[std::size_t(row_of[std::size_t(i)])]);
+    for (const int i : rows) own.of.push_back(g.of_row[row_of[i]]);
     all.push_back(std::move(own));
   }
   return all;
@@ -144,8 +143,7 @@ class SharedErrors {
       Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(grouping_.groups, a.cols());
       Eigen::VectorXd count = Eigen::VectorXd::Zero(grouping_.groups);
       const auto each = [&](const auto& act) {
-        for (Eigen::Index i = 0; i < w_.size(); ++i)
-          act(grouping_.of[std::size_t(i)], w_[i] * seen_(c, i), a.row(i * width + c));
+        for (Eigen::Index i = 0; i < w_.size(); ++i) act(grouping_.of[i], w_[i] * seen_(c, i), a.row(i * width + c));
       };
       each([&](int g, double w, const auto& row) {
         if (g >= 0) sum.row(g) += w * row, count[g] += w;
@@ -177,10 +175,9 @@ std::vector<GroupSpread> between_groups(const ShotModel& model, const Shots& sho
   std::vector<Grouping> groupings = by_columns(shots, row_of, rows, by);
   if (session) {
     std::vector<int> stretch(rows.size());
-    const auto in_order = rising_order(rows.size(), [&](int i) { return model.trial(rows[std::size_t(i)]).order; });
+    const auto in_order = rising_order(rows.size(), [&](int i) { return model.trial(rows[i]).order; });
     const int stretches = std::max(1, int(rows.size()) / kStretch);
-    for (std::size_t i = 0; i < rows.size(); ++i)
-      stretch[std::size_t(in_order[i])] = int(i * std::size_t(stretches) / rows.size());
+    for (std::size_t i = 0; i < rows.size(); ++i) stretch[in_order[i]] = int(i * std::size_t(stretches) / rows.size());
     groupings.push_back({"shot", std::move(stretch), stretches});
   }
   if (groupings.empty()) return {};
@@ -225,7 +222,7 @@ std::optional<Clustered> clustered(const ShotModel& model, const Shots& shots, c
   const Eigen::VectorXd w = weights(z.reshaped(width, n));
   Eigen::MatrixXd seen(width, n);
   for (Eigen::Index i = 0; i < n; ++i)
-    for (Eigen::Index c = 0; c < width; ++c) seen(c, i) = model.observed(rows[std::size_t(i)], int(c)) ? 1 : 0;
+    for (Eigen::Index c = 0; c < width; ++c) seen(c, i) = model.observed(rows[i], int(c)) ? 1 : 0;
   std::optional<Clustered> out;
   double likeliest = Rules{}.gate;
   for (const Grouping& g : by_columns(shots, row_of, rows, by)) {
@@ -238,7 +235,7 @@ std::optional<Clustered> clustered(const ShotModel& model, const Shots& shots, c
       covariance = dense::Ldlt(Eigen::MatrixXd(A.transpose() * A)).inverse();
       step = -covariance * (A.transpose() * shared.partly_demeaned(z));
       const Eigen::VectorXd before = std::exchange(variance, shared.learn((z + J * step).reshaped(width, n)));
-      if ((variance - before).cwiseAbs().maxCoeff() < 1e-3) break;
+      if ((variance - before).cwiseAbs().maxCoeff() < kNothing) break;
     }
     if (!(shared.p < likeliest)) continue;
     likeliest = shared.p;

@@ -24,62 +24,9 @@ namespace hosel::loop {
 namespace {
 
 constexpr std::size_t kMostRows = 240, kMostOfSlow = 80;
-constexpr double kSure = 30;        // least fall of the deviance,
-constexpr double kShare = 0.15;     // and share of it
 constexpr double kPartOfRows = 15;  // price of one of some forty parts
-constexpr double kNoBlow = 1e3;     // noise units of a value that no blow can have
-constexpr double kClean = 1.7;      // deviance per value that a slip of free size may leave
-
-/// Quantities whose sign is a convention.
-bool has_sign(const Column& c) {
-  const auto i = input_of(c.stem);
-  const auto o = output_of(c.stem);
-  if (i) return *i != Input::club_speed && *i != Input::head_mass && *i != Input::dynamic_loft;
-  return o && *o != Output::ball_speed && *o != Output::spin_rate;
-}
-
-Dimension dimension(const Column& c) {
-  if (const auto i = input_of(c.stem)) return quantity(*i).dimension;
-  return quantity(*output_of(c.stem)).dimension;
-}
-
-bool same_unit(double a, double b) { return std::abs(a / b - 1) < kRoundOff; }
-
-/// Returns the project's units of a dimension, and others that launch monitors and people write.
-std::vector<Unit> likely_units(Dimension d) {
-  std::vector<Unit> all;
-  for (const Unit& u : units())
-    if (u.dimension == d && u.suffix != "um") all.push_back(u);  // of no blow: it would be a column that is left out
-  switch (d) {
-    case Dimension::length:
-      all.push_back({"inch", d, 0.0254});
-      all.push_back({"cm", d, 0.01});
-      break;
-    case Dimension::angular_velocity: all.push_back({"revolutions per second", d, 2 * kPi}); break;
-    case Dimension::speed: all.push_back({"feet per second", d, 0.3048}); break;
-    case Dimension::mass: all.push_back({"pounds", d, 0.45359237}); break;
-    default: break;
-  }
-  return all;
-}
 
 }  // namespace
-
-/// Values of `column` (and `second`) as they would have to be read: factor and offset, on the members only.
-struct Columns::Slip {
-  std::string finding;
-  int column = 0, second = -1;
-  double factor = 1, offset = 0;  ///< true value = factor * recorded + offset [SI]
-  int rows = 0;                   ///< the true value stands so many rows below
-  std::vector<char> member;       ///< rows that it holds on; empty: all
-  std::string what, where;        ///< unit; in words, the rows that it holds on
-  double cost = 0;                ///< what a slip of free size, or an unusual one, must earn
-  double deviance = 0;
-  double criterion() const { return deviance + cost; }
-  /// Its size is fitted: beside a contact that is fitted too it would say little.
-  bool free() const { return finding == "offset" || finding == "scale" || finding == "level-shift"; }
-  bool disputed = false;  ///< physics does as well, which changes where it holds; or every group differs
-};
 
 /// Rows that share something: from a shot on, or one group.
 struct Columns::PartOfRows {
@@ -119,13 +66,13 @@ Columns::Columns(const ShotCase& c) : case_(c) {
   estimate_noise();
   contact_ = contact(values_, noise_);
   as_recorded_ = deviance(values_, noise_, Model{}, {});
-  try_constants();
+  for (ColumnSlip& slip : constant_slips(columns_)) attempt(std::move(slip));
   if (quick()) {
     const std::vector<PartOfRows> parts = this->parts();
     try_parts(parts);
     try_sizes(parts);
   }
-  std::ranges::stable_sort(slips_, {}, &Slip::criterion);
+  std::ranges::stable_sort(slips_, {}, &ColumnSlip::criterion);
 }
 
 bool Columns::quick() const { return case_.direct || (!case_.surrogate && case_.model != &closed_form()); }
@@ -362,7 +309,7 @@ double Columns::neighbour(Eigen::Index i, int column, int rows) const {
   return there ? x[std::size_t(at)] : values_(i, column);
 }
 
-Eigen::MatrixXd Columns::corrected(const Slip& s) const {
+Eigen::MatrixXd Columns::corrected(const ColumnSlip& s) const {
   Eigen::MatrixXd values = values_;
   if (s.finding == "swapped") {
     // The numbers were written under each other's header.
@@ -385,7 +332,7 @@ Eigen::MatrixXd Columns::corrected(const Slip& s) const {
 }
 
 /// Noise of the corrected numbers: what was estimated is that of the written ones, and goes with them.
-Eigen::VectorXd Columns::noise_of(const Slip& slip) const {
+Eigen::VectorXd Columns::noise_of(const ColumnSlip& slip) const {
   Eigen::VectorXd noise = noise_;
   const auto first = std::ptrdiff_t(inputs_.size());
   for (const auto& [k, other] : {std::pair{slip.column, slip.second}, {slip.second, slip.column}}) {
@@ -398,7 +345,7 @@ Eigen::VectorXd Columns::noise_of(const Slip& slip) const {
 }
 
 /// Whether a column has enough to be told from another; zeros are zeros in any unit.
-bool Columns::tells(const Slip& slip) const {
+bool Columns::tells(const ColumnSlip& slip) const {
   const auto x = values_.col(slip.column).array();
   const auto read = x.isFinite().count();
   if (slip.finding == "scale" && std::size_t(slip.column) < inputs_.size()) {
@@ -410,7 +357,7 @@ bool Columns::tells(const Slip& slip) const {
   return (read >= kFewestOfRows || read == x.size()) && (slip.factor == 1 || (x.isFinite() && x != 0).any());
 }
 
-void Columns::attempt(Slip slip) {
+void Columns::attempt(ColumnSlip slip) {
   if (!tells(slip)) return;
   slip.deviance = slip.free() ? deviance(corrected(slip), noise_of(slip), {}, {})
                               : contact(corrected(slip), noise_of(slip)).deviance;
@@ -421,41 +368,12 @@ void Columns::attempt(Slip slip) {
   slips_.push_back(std::move(slip));
 }
 
-/// Slips without a free number.
-void Columns::try_constants() {
-  const int count = int(columns_.size());
-  for (int k = 0; k < count; ++k) {
-    const Column& c = *columns_[std::size_t(k)];
-    for (const Unit& u : likely_units(dimension(c))) {
-      if (same_unit(u.si, c.si)) continue;
-      attempt({.finding = "unit", .column = k, .factor = u.si / c.si, .what = std::string(u.suffix), .cost = 2});
-    }
-    if (has_sign(c)) attempt({.finding = "sign", .column = k, .factor = -1, .cost = 2});
-    for (const int rows : {-1, 1}) attempt({.finding = "rows", .column = k, .rows = rows, .cost = 4});
-    for (int l = k + 1; l < count; ++l) {
-      const Column& d = *columns_[std::size_t(l)];
-      if (dimension(c) != dimension(d)) continue;
-      attempt({.finding = "swapped", .column = k, .second = l, .cost = 4});
-      // Both in the same other unit: one monitor, one setting.
-      if (!same_unit(c.si, d.si)) continue;
-      for (const Unit& u : likely_units(dimension(c)))
-        if (!same_unit(u.si, c.si))
-          attempt({.finding = "unit",
-                   .column = k,
-                   .second = l,
-                   .factor = u.si / c.si,
-                   .what = std::string(u.suffix),
-                   .cost = 8});
-    }
-  }
-}
-
 /// The same on a part of the rows, the part that says most: an instrument was set anew in the session.
 void Columns::try_parts(const std::vector<PartOfRows>& parts) {
   const Eigen::MatrixXd W = whitening(values_, noise_);
   const Eigen::VectorXd recorded = losses(residuals(values_, contact_.model, contact_.size), W);
-  std::vector<Slip> on_parts;
-  for (const Slip& whole : slips_) {
+  std::vector<ColumnSlip> on_parts;
+  for (const ColumnSlip& whole : slips_) {
     if (whole.finding == "swapped" || whole.second >= 0) continue;
     const bool output = whole.column >= int(inputs_.size());
     // Where its noise was estimated, that of the written numbers goes with them. Their density, as for all rows.
@@ -467,7 +385,7 @@ void Columns::try_parts(const std::vector<PartOfRows>& parts) {
         if (std::isfinite(values_(i, std::ptrdiff_t(inputs_.size()) + c))) better[i] += scale[c];
       if (output && std::isfinite(values_(i, whole.column))) better[i] += 2 * std::log(std::abs(whole.factor));
     }
-    Slip best = whole;
+    ColumnSlip best = whole;
     best.deviance = kInfinity;
     best.cost += kPartOfRows;
     for (const PartOfRows& part : parts)
@@ -654,11 +572,11 @@ std::map<std::string, double> Columns::by_contact(const Eigen::MatrixXd& z, cons
 /// recorded values, the best of them again about themselves.
 void Columns::try_sizes(const std::vector<PartOfRows>& parts) {
   const Eigen::MatrixXd W = whitening(values_, noise_), z = residuals(values_, {}, {}) * W.transpose();
-  std::vector<Slip> trials;
+  std::vector<ColumnSlip> trials;
   for (int k = 0; k < int(columns_.size()); ++k) {
     const Eigen::MatrixXd J = sensitivity(values_, k) * W.transpose();
     if (J.norm() < kNoMotion) continue;
-    const auto consider = [&](Slip slip, const Eigen::MatrixXd& j) {
+    const auto consider = [&](ColumnSlip slip, const Eigen::MatrixXd& j) {
       const auto [t, value] = fitted(z, j);
       (slip.finding == "scale" ? slip.factor : slip.offset) += t;
       slip.deviance = value;
@@ -668,30 +586,30 @@ void Columns::try_sizes(const std::vector<PartOfRows>& parts) {
     const Eigen::VectorXd x = values_.col(k).unaryExpr([](double v) { return std::isfinite(v) ? v : 0.0; });
     consider({.finding = "scale", .column = k, .cost = 9}, x.asDiagonal() * J);
     for (const PartOfRows& part : parts) {
-      Slip shift{
+      ColumnSlip shift{
           .finding = "level-shift", .column = k, .member = part.member, .where = part.where, .cost = kPartOfRows};
       shift.disputed = spread_over(z, J, part.others);
       consider(std::move(shift), members_only(J, part.member));
     }
   }
   const std::map<std::string, double> physics = by_contact(z, W, parts);
-  const auto dispute = [&](Slip& t, double scale) {
+  const auto dispute = [&](ColumnSlip& t, double scale) {
     if (const auto it = physics.find(t.where); it != physics.end())
       t.disputed = t.disputed || it->second + scale + t.cost < t.criterion() + case_.rules.tie;
   };
-  for (Slip& t : trials) dispute(t, 0);
-  for (Slip& s : slips_)  // whose deviance has the density's scale
+  for (ColumnSlip& t : trials) dispute(t, 0);
+  for (ColumnSlip& s : slips_)  // whose deviance has the density's scale
     if (!s.where.empty()) dispute(s, log_scale(values_, W));
-  std::ranges::stable_sort(trials, {}, &Slip::criterion);
+  std::ranges::stable_sort(trials, {}, &ColumnSlip::criterion);
   // The best few, of different columns or kinds, about themselves.
-  std::vector<Slip> kept;
-  for (const Slip& t : trials) {
+  std::vector<ColumnSlip> kept;
+  for (const ColumnSlip& t : trials) {
     if (kept.size() == 10) break;
-    const auto same =
-        std::ranges::count_if(kept, [&](const Slip& s) { return s.column == t.column && s.finding == t.finding; });
+    const auto same = std::ranges::count_if(
+        kept, [&](const ColumnSlip& s) { return s.column == t.column && s.finding == t.finding; });
     if (same < (t.finding == "level-shift" ? 2 : 1)) kept.push_back(t);
   }
-  for (Slip& slip : kept) {
+  for (ColumnSlip& slip : kept) {
     for (int pass = 0; pass < 3; ++pass) {
       const Eigen::MatrixXd at = corrected(slip), V = whitening(at, noise_of(slip));
       Eigen::MatrixXd j = sensitivity(at, slip.column) * V.transpose();
@@ -705,27 +623,6 @@ void Columns::try_sizes(const std::vector<PartOfRows>& parts) {
     }
     attempt(std::move(slip));
   }
-}
-
-std::string Columns::text(const Slip& s, bool second) const {
-  const Column& c = *columns_[std::size_t(second ? s.second : s.column)];
-  const std::string unit = split_unit(c.name).unit ? std::string(split_unit(c.name).unit->suffix) : "";
-  const std::string where = s.where.empty() ? "" : " " + s.where;
-  if (s.finding == "unit")
-    return fmt::format("{} reads like {}{}: ratio {:.4g} to what the other columns allow", c.name, s.what, where,
-                       s.factor < 1 ? 1 / s.factor : s.factor);
-  if (s.finding == "sign") return fmt::format("{} reads with the other sign{}", c.name, where);
-  if (s.finding == "rows")
-    return fmt::format("{} is that of the row {}{}", c.name, s.rows > 0 ? "before" : "after", where);
-  if (s.finding == "swapped")
-    return fmt::format("{} reads like {}: the two columns are swapped", c.name,
-                       columns_[std::size_t(second ? s.column : s.second)]->name);
-  if (s.finding == "scale")
-    return fmt::format("{} reads {:.4g} times what the other columns allow", c.name, 1 / s.factor);
-  const std::string by =
-      fmt::format("{:.4g} {} too {}", std::abs(s.offset) / c.si, unit, s.offset < 0 ? "high" : "low");
-  if (s.finding == "offset") return fmt::format("{} reads {} throughout", c.name, by);
-  return fmt::format("{} reads {}{}", c.name, by, where);
 }
 
 /// The least criterion of the likeliest rivals and of the other forms of their effects, all fitted to the rows that
@@ -757,23 +654,14 @@ double Columns::library(const std::vector<Fit>& rivals, const std::vector<Parame
   std::vector<double> found(from.size(), kInfinity);
   for_all(std::size_t(0), from.size(), [&](std::size_t k) {
     const auto& [model, start] = from[k];
-    if (model.size() == 0) return;
-    solvers::LeastSquares problem{.residuals = int(values_.rows() * width)};
-    Eigen::VectorXd scale(model.size());
-    for (const Parameter* q : model.parameters()) {
-      scale[Eigen::Index(problem.bounds.size())] = q->scale;
-      problem.bounds.push_back({q->min / q->scale, q->max / q->scale, 1});
-    }
-    problem.loss = loss_of_shot(int(width)).uncapped();
-    problem.value = [&](const Eigen::VectorXd& p, Eigen::VectorXd& z) {
-      const Eigen::MatrixXd r = residuals(values_, model, p.cwiseProduct(scale)) * W.transpose();
+    const auto whitened = [&](const Eigen::VectorXd& p, Eigen::VectorXd& z) {
+      const Eigen::MatrixXd r = residuals(values_, model, p) * W.transpose();
       z = r.transpose().reshaped().unaryExpr([](double x) { return std::isfinite(x) ? x : kNoBlow; });
       return true;
     };
-    problem.step = 0.1;  // of what matters: the blow is nearly linear in it
-    const auto at = solvers::minimise(problem, start.cwiseQuotient(scale), {.iterations = 6, .cost = 1e-4});
-    if (at && std::ranges::none_of(solvers::at_bounds(at->parameters, problem.bounds), std::identity{}))
-      found[k] = log_scale(values_, W) + 2 * at->cost + price(model);
+    found[k] =
+        log_scale(values_, W) + price(model) +
+        refitted(model, start, int(values_.rows() * width), loss_of_shot(int(width)).uncapped(), whitened).deviance;
   });
   found.push_back(least);
   return std::ranges::min(found);
@@ -785,29 +673,12 @@ std::vector<WrongColumn> Columns::contradicted(const std::vector<Fit>& rivals,
   const double values = double(values_.rightCols(std::ptrdiff_t(outputs_.size())).array().isFinite().count());
   const double scale = log_scale(values_, whitening(values_, noise_));
   double library = as_recorded_;
-  const auto holds = [&](const Slip& s) {
-    const bool free = !s.where.empty() || s.finding == "offset" || s.finding == "scale";
-    const double recorded = s.free() ? as_recorded_ : contact_.deviance, base = recorded - scale;
-    return recorded - s.criterion() > std::max(kSure, kShare * base) && library - s.criterion() > case_.rules.tie &&
-           (!free || s.deviance - scale < kClean * values);
+  const auto holds = [&](const ColumnSlip& s) {
+    return contradicts(s, s.free() ? as_recorded_ : contact_.deviance, library, scale, values, case_.rules.tie);
   };
   if (std::ranges::none_of(slips_, holds)) return {};
   if (quick()) library = this->library(rivals, forms);
-  const auto best = std::ranges::find_if(slips_, holds);
-  if (best == slips_.end() || best->criterion() > slips_.front().criterion() + case_.rules.tie || best->disputed)
-    return {};
-  std::vector<WrongColumn> told;
-  std::string also;
-  for (const Slip& s : slips_)
-    if (&s != &*best && s.criterion() < best->criterion() + case_.rules.tie && s.column != best->column && holds(s)) {
-      also = "; or " + text(s, false);
-      break;
-    }
-  for (const bool second : {false, true})
-    if (!second || best->second >= 0)
-      told.push_back({columns_[std::size_t(second ? best->second : best->column)]->name, best->finding,
-                      text(*best, second) + also});
-  return told;
+  return told(columns_, slips_, case_.rules.tie, holds);
 }
 
 }  // namespace hosel::loop

@@ -1,4 +1,4 @@
-/// Wrong columns: unit, sign, swapped, moved by a row, offset, scale, level shift. They are reported, never repaired.
+/// Wrong columns of shots.
 #pragma once
 
 #include <Eigen/Core>
@@ -10,14 +10,9 @@
 #include "loop/fit.hpp"
 #include "loop/shots/case.hpp"
 #include "loop/shots/model.hpp"
+#include "loop/wrong_columns.hpp"
 
 namespace hosel::loop {
-
-struct WrongColumn {
-  std::string column;
-  std::string finding;  ///< unit, sign, swapped, rows, offset, scale, level-shift
-  std::string text;     ///< "reads like mph: ..."
-};
 
 /// Every slip of whole columns is tried on all rows (of long sets on some, evenly spread): none is screened away,
 /// values that no blow can have count as far off. Slips compete by a deviance whose tail is logarithmic, so that a slip
@@ -32,7 +27,6 @@ class Columns {
                                         const std::vector<Parametrisation>& forms) const;
 
  private:
-  struct Slip;
   struct PartOfRows;
   struct Contact {
     Model model;
@@ -56,18 +50,16 @@ class Columns {
   double library(const std::vector<Fit>& rivals, const std::vector<Parametrisation>& forms) const;
   double log_scale(const Eigen::MatrixXd& values, const Eigen::MatrixXd& whitening) const;
   Eigen::MatrixXd whitening(const Eigen::MatrixXd& values, const Eigen::VectorXd& noise) const;
-  Eigen::VectorXd noise_of(const Slip& slip) const;
-  Eigen::MatrixXd corrected(const Slip& slip) const;
+  Eigen::VectorXd noise_of(const ColumnSlip& slip) const;
+  Eigen::MatrixXd corrected(const ColumnSlip& slip) const;
   double neighbour(Eigen::Index row, int column, int rows) const;
-  bool tells(const Slip& slip) const;
-  void attempt(Slip slip);
-  void try_constants();
+  bool tells(const ColumnSlip& slip) const;
+  void attempt(ColumnSlip slip);
   std::vector<PartOfRows> parts() const;
   std::map<std::string, double> by_contact(const Eigen::MatrixXd& z, const Eigen::MatrixXd& W,
                                            const std::vector<PartOfRows>& parts) const;
   void try_parts(const std::vector<PartOfRows>& parts);
   void try_sizes(const std::vector<PartOfRows>& parts);
-  std::string text(const Slip& slip, bool second) const;
 
   const ShotCase& case_;
   std::vector<const Column*> columns_;    ///< inputs, then channels
@@ -80,7 +72,7 @@ class Columns {
   Eigen::VectorXd noise_, input_noise_;   ///< per channel, per input [SI]
   std::unique_ptr<ShotModel> model_;      ///< the base itself
   std::unique_ptr<ShotModel> companion_;  ///< tells what effects change, where the base does not
-  std::vector<Slip> slips_;               ///< the likeliest first
+  std::vector<ColumnSlip> slips_;         ///< the likeliest first
   Contact contact_;                       ///< as recorded
   double as_recorded_ = 0;                ///< deviance
 };

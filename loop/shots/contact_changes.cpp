@@ -6,13 +6,14 @@
 namespace hosel::loop {
 namespace {
 
-ContactChange unchanged(double largest) {
-  return {{.effect = "", .what = "", .parameters = {{"change", "1", 1, -1, 1, 1e-3}}}, largest};
+ContactChange unchanged(double largest, double scale = 1e-3) {
+  return {{.effect = "", .what = "", .parameters = {{"change", "1", 1, -1, 1, scale}}}, largest};
 }
 
-ContactChange changed(double ContactLaw::*of, double largest) {
-  ContactChange c = unchanged(largest);
-  c.form.before = [of](std::span<const double> p, Shot& s) { s.blow.contact.*of += p[0]; };
+/// Of one number of the blow.
+ContactChange changed(auto number, double largest, double scale = 1e-3) {
+  ContactChange c = unchanged(largest, scale);
+  c.form.before = [number](Sizes p, Shot& s) { number(s.blow) += p[0]; };
   return c;
 }
 
@@ -35,7 +36,7 @@ struct Direction {
 
 ContactChange returned_along(int axis) {
   ContactChange c = unchanged(0.8);
-  c.form.after = [axis](std::span<const double> p, const Shot& s, Launch& launch) {
+  c.form.after = [axis](Sizes p, const Shot& s, Launch& launch) {
     Blow with = s.blow;
     with.contact.tangential_restitution += p[0];
     const Launch a = closed_form().launch(with), b = closed_form().launch(s.blow);
@@ -46,7 +47,7 @@ ContactChange returned_along(int axis) {
 
 ContactChange transmitted_along(int axis) {
   ContactChange c = unchanged(0.8);
-  c.form.after = [axis](std::span<const double> p, const Shot& s, Launch& launch) {
+  c.form.after = [axis](Sizes p, const Shot& s, Launch& launch) {
     Direction(s.blow, axis).add(p[0], launch.velocity, launch.spin, launch);
   };
   return c;
@@ -55,18 +56,14 @@ ContactChange transmitted_along(int axis) {
 }  // namespace
 
 std::array<ContactChange, 3> of_another_ball() {
-  ContactChange inertia = unchanged(0.06);
-  inertia.form.before = [](std::span<const double> p, Shot& s) { s.blow.ball.inertia_factor += p[0]; };
-  inertia.form.parameters.front().scale = 0.01;
-  return {changed(&ContactLaw::restitution, 0.1), changed(&ContactLaw::tangential_restitution, 0.3),
-          std::move(inertia)};
+  return {changed([](Blow& b) -> double& { return b.contact.restitution; }, 0.1),
+          changed([](Blow& b) -> double& { return b.contact.tangential_restitution; }, 0.3),
+          changed([](Blow& b) -> double& { return b.ball.inertia_factor; }, 0.06, 0.01)};
 }
 
 std::array<ContactChange, 3> of_another_head() {
   const auto moved = [](int axis) {
-    ContactChange c = unchanged(0.02);
-    c.form.before = [axis](std::span<const double> p, Shot& s) { s.blow.club.head.cg[axis] += p[0]; };
-    return c;
+    return changed([axis](Blow& b) -> double& { return b.club.head.cg[axis]; }, 0.02);
   };
   return {moved(0), moved(1), moved(2)};
 }

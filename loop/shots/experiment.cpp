@@ -105,7 +105,7 @@ std::vector<Fit> family(const Problem& problem, const Fit& as_fitted, const std:
       continue;
     Model m;
     std::vector<double> start;
-    as_fitted.model.each(as_fitted.p.data(), [&](const Parametrisation& old, std::span<const double> p) {
+    as_fitted.model.each(as_fitted.p.data(), [&](const Parametrisation& old, Sizes p) {
       m.forms.push_back(old.effect == name ? &f : &old);
       if (old.effect == name) start.resize(start.size() + f.parameters.size());
       else start.insert(start.end(), p.begin(), p.end());

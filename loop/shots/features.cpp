@@ -35,7 +35,7 @@ double moment(const Shot& s) {
 template <int k>
 void set_moment(Shot& s, double x) {
   Mat3& inertia = s.blow.club.head.inertia;
-  const double root = std::exp(0.5 * (x - moment<k>(s)));
+  const double root = std::exp((x - moment<k>(s)) / 2);
   inertia.row(k) *= root;
   inertia.col(k) *= root;
 }

@@ -29,11 +29,10 @@ double loft_of(Blow blow, double launch_angle) {
 
 std::vector<double> session_order(const Shots& shots, const std::vector<int>& rows) {
   const Column* shot = shots.find("shot");
-  const bool numbered = shot && shot->numeric && std::ranges::all_of(rows, [&](int row) {
-                          return std::isfinite(shot->value[std::size_t(row)]);
-                        });
+  const bool numbered = shot && shot->numeric &&
+                        std::ranges::all_of(rows, [&](int row) { return std::isfinite(shot->value[row]); });
   std::vector<double> place;
-  for (const int row : rows) place.push_back(numbered ? shot->value[std::size_t(row)] : double(row));
+  for (const int row : rows) place.push_back(numbered ? shot->value[row] : double(row));
   if (place.empty()) return place;
   if (const Column* by = sorted_by(shots); by && by->numeric) {
     // The session's order is lost. A drawn one shows nothing that the sorting makes.
@@ -50,7 +49,7 @@ Inputs make_inputs(const Shots& shots, const Blow& blow, bool head_mass_declared
                    const std::map<std::string, double>& noise, bool loft_unknown) {
   Inputs in;
   std::array<const Column*, kInputs> column{};
-  for (int k = 0; k < kInputs; ++k) column[std::size_t(k)] = shots.find_stem(stem(Input(k)));
+  for (int k = 0; k < kInputs; ++k) column[k] = shots.find_stem(stem(Input(k)));
   if (loft_unknown) column[std::size_t(Input::dynamic_loft)] = nullptr;
   std::vector<std::pair<std::string_view, const Column*>> all_needed{
       {stem(Input::club_speed), column[std::size_t(Input::club_speed)]}};
@@ -63,7 +62,7 @@ Inputs make_inputs(const Shots& shots, const Blow& blow, bool head_mass_declared
     throw DataError(fmt::format("{}:1: no head mass: neither [head] mass_kg nor a column head_mass_*", shots.file));
 
   for (int k = 0; k < kInputs; ++k)
-    if (!column[std::size_t(k)] && k != int(Input::head_mass) && !(loft_unknown && Input(k) == Input::dynamic_loft))
+    if (!column[k] && k != int(Input::head_mass) && !(loft_unknown && Input(k) == Input::dynamic_loft))
       in.notes.push_back(fmt::format("no column {}: taken as zero", stem(Input(k))));
 
   std::array<int, kInputs> filled{};
@@ -88,7 +87,7 @@ Inputs make_inputs(const Shots& shots, const Blow& blow, bool head_mass_declared
     if (!complete) continue;
     const Column* wrong = nullptr;
     for (int k = 0; k < kInputs && !wrong; ++k)
-      if (const Column* c = column[std::size_t(k)])
+      if (const Column* c = column[k])
         if (const double x = c->value[i]; x < quantity(Input(k)).low || x > quantity(Input(k)).high) wrong = c;
     if (wrong) {
       in.impossible.push_back(
@@ -98,7 +97,7 @@ Inputs make_inputs(const Shots& shots, const Blow& blow, bool head_mass_declared
     Shot t;
     t.blow = blow;
     for (int k = 0; k < kInputs; ++k)
-      if (const Column* c = column[std::size_t(k)]; c && std::isfinite(c->value[i])) set(t.blow, Input(k), c->value[i]);
+      if (const Column* c = column[k]; c && std::isfinite(c->value[i])) set(t.blow, Input(k), c->value[i]);
     if (loft_unknown) t.blow.delivery.dynamic_loft = loft_of(t.blow, all_needed.back().second->value[i]);
     in.trials.push_back(t);
     in.row_of.push_back(int(i));
@@ -114,50 +113,49 @@ Inputs make_inputs(const Shots& shots, const Blow& blow, bool head_mass_declared
   std::array<bool, kInputs> nominal{};
   bool any = false;
   for (int k = 0; k < kInputs; ++k) {
-    const Column* c = column[std::size_t(k)];
+    const Column* c = column[k];
     if (!c) continue;
     std::vector<double> x;
     for (const int row : in.row_of)
-      if (std::isfinite(c->value[std::size_t(row)])) x.push_back(c->value[std::size_t(row)]);
+      if (std::isfinite(c->value[row])) x.push_back(c->value[row]);
     if (x.empty()) continue;
     const auto [mid, mad] = robust_moments(x);
-    const double fence = mad > 0 ? 4 * mad : kInfinity;
+    const double fence = mad > 0 ? kFence * mad : kInfinity;
     double sum = 0, square = 0, count = 0;
     for (const double v : x)
       if (std::abs(v - mid) <= fence) {
         sum += v;
         ++count;
       }
-    centre[std::size_t(k)] = sum / count;
+    centre[k] = sum / count;
     for (const double v : x)
       if (std::abs(v - mid) <= fence) square += (v - sum / count) * (v - sum / count);
-    spread[std::size_t(k)] = count > 1 ? std::sqrt(square / (count - 1)) : 0;
-    if (const auto it = noise.find(c->name); it != noise.end()) sigma[std::size_t(k)] = it->second * c->si;
+    spread[k] = count > 1 ? std::sqrt(square / (count - 1)) : 0;
+    if (const auto it = noise.find(c->name); it != noise.end()) sigma[k] = it->second * c->si;
     for (std::size_t i = 0; i < n; ++i)
-      if (std::isnan(c->value[std::size_t(in.row_of[i])]) && k != int(Input::head_mass)) ++filled[std::size_t(k)];
-    any = any || sigma[std::size_t(k)] > 0 || filled[std::size_t(k)] > 0;
+      if (std::isnan(c->value[in.row_of[i]]) && k != int(Input::head_mass)) ++filled[k];
+    any = any || sigma[k] > 0 || filled[k] > 0;
     // What was read with an error scatters at least by it: such a record says what was set, not what was.
-    const double variance = spread[std::size_t(k)] * spread[std::size_t(k)],
-                 error = sigma[std::size_t(k)] * sigma[std::size_t(k)];
-    nominal[std::size_t(k)] = variance < error * std::max(0.1, 1 - 3 * std::sqrt(2 / count));
-    if (nominal[std::size_t(k)])
+    const double variance = spread[k] * spread[k], error = sigma[k] * sigma[k];
+    nominal[k] = variance < error * std::max(0.1, 1 - 3 * std::sqrt(2 / count));
+    if (nominal[k])
       in.notes.push_back(
           fmt::format("{}: its values differ by less than their declared error. Each is taken as a nominal value, from "
                       "which the true one differs by that error",
                       c->name));
   }
   for (int k = 0; k < kInputs; ++k)
-    if (filled[std::size_t(k)])
+    if (filled[k])
       in.notes.push_back(
           fmt::format("{}: {} missing values are inferred from the row's other inputs; these shots count as uncertain "
                       "by what those leave open",
-                      column[std::size_t(k)]->name, filled[std::size_t(k)]));
+                      column[k]->name, filled[k]));
   if (!any) return in;
 
   // Covariance of the record over the complete rows inside the fences, and what is left once the record is known.
   Eigen::MatrixXd total = Eigen::MatrixXd::Zero(kInputs, kInputs);
   double count = 0;
-  const auto value = [&](std::size_t i, std::size_t k) { return column[k]->value[std::size_t(in.row_of[i])]; };
+  const auto value = [&](std::size_t i, std::size_t k) { return column[k]->value[in.row_of[i]]; };
   const auto outside = [&](std::size_t i, std::size_t k) {
     return std::abs(value(i, k) - centre[k]) > 5 * spread[k];  // no: missing
   };
@@ -183,7 +181,7 @@ Inputs make_inputs(const Shots& shots, const Blow& blow, bool head_mass_declared
   // Only inputs with noise, or missing, are set to their expectation; the others are known and inform it.
   const Eigen::MatrixXd noise_cov = Eigen::Map<const Eigen::VectorXd>(sigma.data(), kInputs).cwiseAbs2().asDiagonal();
   Eigen::VectorXd unit(kInputs);
-  for (int k = 0; k < kInputs; ++k) unit[k] = spread[std::size_t(k)] > 0 ? spread[std::size_t(k)] : 1;
+  for (int k = 0; k < kInputs; ++k) unit[k] = spread[k] > 0 ? spread[k] : 1;
   const Eigen::MatrixXd scaled_total = unit.cwiseInverse().asDiagonal() * total * unit.cwiseInverse().asDiagonal();
   Eigen::MatrixXd scaled_noise = unit.cwiseInverse().asDiagonal() * noise_cov * unit.cwiseInverse().asDiagonal();
   for (std::size_t k = 0; k < kInputs; ++k)
@@ -217,7 +215,7 @@ Inputs make_inputs(const Shots& shots, const Blow& blow, bool head_mass_declared
     const auto& [gain, left] = at->second;
     Eigen::VectorXd d(m);
     for (std::ptrdiff_t j = 0; j < m; ++j) {
-      const auto k = std::size_t(recorded[std::size_t(j)]);
+      const auto k = std::size_t(recorded[j]);
       d[j] = (value(i, k) - centre[k]) / spread[k];
     }
     const Eigen::VectorXd best = gain * d;

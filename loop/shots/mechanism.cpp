@@ -39,7 +39,7 @@ Field::Basis basis(const Eigen::MatrixXd& covariance, const std::vector<int>& kn
   centred.array() += mean.mean();
   const dense::Eigenpairs all = dense::eigenpairs(centred(knots, Eigen::all));
   const Eigen::Index terms =
-      std::clamp<Eigen::Index>((all.values.array() > 1e-6 * all.values.maxCoeff()).count(), 1, most);
+      std::clamp<Eigen::Index>((all.values.array() > kFaint * all.values.maxCoeff()).count(), 1, most);
   const Eigen::VectorXd values = all.values.tail(terms).cwiseMax(0);
   Field::Basis b{centred * all.vectors.rightCols(terms), values};
   for (Eigen::Index k = 0; k < terms; ++k) b.phi.col(k) /= std::max(values[k], kTiny);
@@ -66,7 +66,7 @@ std::vector<Field> fields(const ShotModel& model, const Shots& shots, const std:
   const auto n = Eigen::Index(rows.size());
   const auto scaled = [&](const Eigen::VectorXd& x) {
     Eigen::VectorXd out(n);
-    for (Eigen::Index i = 0; i < n; ++i) out[i] = x[rows[std::size_t(i)]];
+    for (Eigen::Index i = 0; i < n; ++i) out[i] = x[rows[i]];
     double sum = 0, count = 0;
     for (const double v : out)
       if (std::isfinite(v)) sum += v, ++count;
@@ -82,7 +82,7 @@ std::vector<Field> fields(const ShotModel& model, const Shots& shots, const std:
   const auto covariance = [&](auto&& value) {
     Eigen::MatrixXd K(n, Eigen::Index(knots.size()));
     for (Eigen::Index i = 0; i < n; ++i)
-      for (Eigen::Index j = 0; j < K.cols(); ++j) K(i, j) = value(i, Eigen::Index(knots[std::size_t(j)]));
+      for (Eigen::Index j = 0; j < K.cols(); ++j) K(i, j) = value(i, Eigen::Index(knots[j]));
     return K;
   };
   const auto smooth_covariance = [&](const std::vector<Eigen::VectorXd>& x, double length) {
@@ -119,7 +119,7 @@ std::vector<Field> fields(const ShotModel& model, const Shots& shots, const std:
     std::ranges::sort(sorted);
     constexpr Eigen::Index places = 15;
     for (Eigen::Index k = 1; k <= places; ++k) {
-      const double from = sorted[std::size_t(k * n / (places + 1))];
+      const double from = sorted[k * n / (places + 1)];
       steps.push_back(covariance([&](auto i, auto j) { return double(x[i] >= from && x[j] >= from); }));
       step.smoothness.push_back(basis(steps.back(), knots));
     }
@@ -138,7 +138,7 @@ std::vector<Field> fields(const ShotModel& model, const Shots& shots, const std:
     if (c.numeric || c.role == Role::output) continue;
     const Groups g = groups(c);
     if (g.name.size() < 2 || g.name.size() > kMostGroups) continue;
-    const auto group = [&](auto i) { return g.of_row[std::size_t(row_of[std::size_t(rows[std::size_t(i)])])]; };
+    const auto group = [&](auto i) { return g.of_row[row_of[rows[i]]]; };
     const auto same = [&](auto i, auto j) { return double(group(i) == group(j)); };
     all.push_back({.along = c.name, .smoothness = {basis(covariance(same), knots)}});
   }
@@ -200,7 +200,7 @@ Eigen::VectorXd towards_mean(const Column& column, const std::vector<int>& row_o
   Eigen::VectorXd x(Eigen::Index(rows.size()));
   double sum = 0, count = 0;
   for (std::size_t i = 0; i < rows.size(); ++i) {
-    x[Eigen::Index(i)] = column.value[std::size_t(row_of[std::size_t(rows[i])])];
+    x[Eigen::Index(i)] = column.value[row_of[rows[i]]];
     if (std::isfinite(x[Eigen::Index(i)])) sum += x[Eigen::Index(i)], ++count;
   }
   for (double& v : x) v = std::isfinite(v) ? sum / count - v : 0;
@@ -225,12 +225,12 @@ Eigen::MatrixXd by_noise(const Eigen::MatrixXd& z, const std::vector<Eigen::Matr
     share = dense::Cholesky(A).solve(Eigen::VectorXd(-C.transpose() * seen));
     std::vector<Eigen::Index> kept;
     for (Eigen::Index k = 0; k < n; ++k)
-      if (share[k] > 0) kept.push_back(used[std::size_t(k)]);
+      if (share[k] > 0) kept.push_back(used[k]);
     again = kept.size() < used.size();
     used = std::move(kept);
   }
   Eigen::MatrixXd out = Eigen::MatrixXd::Zero(z.rows(), z.cols());
-  for (std::size_t k = 0; k < used.size(); ++k) out += usual * share[Eigen::Index(k)] * by[std::size_t(used[k])];
+  for (std::size_t k = 0; k < used.size(); ++k) out += usual * share[Eigen::Index(k)] * by[used[k]];
   return out;
 }
 
@@ -248,7 +248,7 @@ bool monotone(const Eigen::VectorXd& g, const std::vector<double>& order) {
     way += d;
     path += std::abs(d);
   }
-  return std::abs(way) > 0.8 * path;
+  return std::abs(way) > kNearlyAll * path;
 }
 
 /// The effects that such a function is.

@@ -44,7 +44,7 @@ double flat_population(const Eigen::VectorXd& y) {
   for (const double shape : {3.0, 6.0, 20.0}) {
     double low = y.minCoeff(), high = y.maxCoeff();
     Eigen::ArrayXd u;
-    for (int pass = 0; pass < 40; ++pass) {  // to the centre of the least sum of powers
+    for (int pass = 0; pass < kPasses; ++pass) {  // to the centre of the least sum of powers
       const double centre = (low + high) / 2;
       u = (y.array() - centre) / s;
       ((u.sign() * u.abs().pow(shape - 1)).sum() > 0 ? low : high) = centre;
@@ -53,6 +53,13 @@ double flat_population(const Eigen::VectorXd& y) {
     best = std::max(best, n * (std::log(shape / (2 * width)) - std::lgamma(1 / shape) - 1 / shape));
   }
   return best;
+}
+
+/// Rows that are rather of the second population, by their probabilities.
+std::vector<char> likelier(const Eigen::ArrayXd& second) {
+  std::vector<char> rows;
+  for (const double p : second) rows.push_back(p > 0.5);
+  return rows;
 }
 
 /// Two normal populations of one scatter, from a first division at each of some quantiles.
@@ -66,7 +73,7 @@ Mixture two_populations(const Eigen::VectorXd& y) {
     const double cut = at_share(sorted, q);
     Eigen::ArrayXd second = (y.array() > cut).cast<double>();
     double share = 0, a = 0, b = 0, s = 1, sum = 0;
-    for (int pass = 0; pass < 40; ++pass) {
+    for (int pass = 0; pass < kPasses; ++pass) {
       share = second.mean();
       if (!(share * double(n) >= 2 && (1 - share) * double(n) >= 2)) break;
       b = (second * y.array()).sum() / second.sum();
@@ -83,8 +90,7 @@ Mixture two_populations(const Eigen::VectorXd& y) {
       }
     }
     if (!(share * double(n) >= 2 && (1 - share) * double(n) >= 2 && s > kRoundOff) || sum <= best.gain) continue;
-    best = {.gain = sum, .share = share, .apart = (b - a) / s, .deviation = s, .second = {}};
-    for (const double p : second) best.second.push_back(p > 0.5);
+    best = {.gain = sum, .share = share, .apart = (b - a) / s, .deviation = s, .second = likelier(second)};
   }
   return best;
 }
@@ -119,7 +125,7 @@ double one_population(const Eigen::MatrixXd& z) {
 
 std::optional<Mixture> mixture(const Eigen::MatrixXd& first, const Residuals& second, const Eigen::VectorXd& start,
                                const Eigen::VectorXd& low, const Eigen::VectorXd& high, double one) {
-  constexpr double step = 0.01, untold_share = 1.0 / 7;
+  constexpr double untold_share = 1.0 / 7;
   constexpr int passes = 15;
   const Eigen::Index n = first.rows(), m = first.cols(), size = start.size();
   if (n < kFewestToPart) return {};
@@ -140,7 +146,7 @@ std::optional<Mixture> mixture(const Eigen::MatrixXd& first, const Residuals& se
     Eigen::VectorXd gradient = Eigen::VectorXd::Zero(size);
     for (Eigen::Index k = 0; k < size; ++k) {
       Eigen::VectorXd there = p;
-      there[k] += there[k] + step > high[k] ? -step : step;
+      there[k] += there[k] + kCoarseStep > high[k] ? -kCoarseStep : kCoarseStep;
       if (!second(there, moved)) return {};
       slope.push_back((moved - z) / (there[k] - p[k]));
     }
@@ -148,8 +154,8 @@ std::optional<Mixture> mixture(const Eigen::MatrixXd& first, const Residuals& se
       return (((a.array() * b.array()).colwise() * in).colwise().sum().transpose() / scatter.square()).sum();
     };
     for (Eigen::Index k = 0; k < size; ++k) {
-      gradient[k] = weighted(slope[std::size_t(k)], z);
-      for (Eigen::Index l = 0; l < size; ++l) normal(k, l) = weighted(slope[std::size_t(k)], slope[std::size_t(l)]);
+      gradient[k] = weighted(slope[k], z);
+      for (Eigen::Index l = 0; l < size; ++l) normal(k, l) = weighted(slope[k], slope[l]);
     }
     normal.diagonal() *= 1 + 1e-9;
     p = (p - dense::Ldlt(normal).solve(gradient)).cwiseMax(low).cwiseMin(high);
@@ -174,7 +180,7 @@ std::optional<Mixture> mixture(const Eigen::MatrixXd& first, const Residuals& se
   if (out.apart < kLeastApart) return {};
   out.deviation = std::sqrt(scatter.square().mean());
   out.gain = 2 * (log_likelihood - one) - Rules{}.parameter_cost * double(size);
-  for (const double x : in) out.second.push_back(x > 0.5);
+  out.second = likelier(in);
   return out;
 }
 

@@ -16,8 +16,7 @@
 namespace hosel::loop {
 namespace {
 
-constexpr double kImpossible = 100;                 // noise units
-constexpr double kCentral = 1e-3, kForward = 1e-5;  // difference steps, of a parameter's scale
+constexpr double kForward = 1e-5;  // one-sided difference steps, of a parameter's scale
 // Flights step where their error tells them to, so that neighbours differ by their tolerance: closer, and wider apart.
 constexpr double kFlightStep = 1e-2;
 constexpr models::FlightOptions kFlight = {.tolerance = 1e-6};
@@ -70,15 +69,14 @@ ContactLaw like(Blow blow, const Launch& base) {
   const FirstContact g = first_contact(blow);
   const Vec3 axis = g.normal.cross(g.slip()).normalized();
   const auto of = [&](const Launch& l) { return Eigen::Vector2d(l.velocity.dot(g.normal), l.spin.dot(axis)); };
-  constexpr double step = 0.01;
   for (int pass = 0; pass < 3; ++pass) {
     const Eigen::Vector2d now = of(closed_form().launch(blow));
     Eigen::Matrix2d slope;
     int column = 0;
     for (double* x : {&blow.contact.restitution, &blow.contact.tangential_restitution}) {
-      *x += step;
-      slope.col(column++) = (of(closed_form().launch(blow)) - now) / step;
-      *x -= step;
+      *x += kCoarseStep;
+      slope.col(column++) = (of(closed_form().launch(blow)) - now) / kCoarseStep;
+      *x -= kCoarseStep;
     }
     const Eigen::Vector2d change = slope.inverse() * (of(base) - now);
     blow.contact.restitution += change[0];
@@ -144,18 +142,18 @@ Launch ShotModel::answer(const Shot& trial, int shot) const {
   if (direct_) return base_.launch(trial.blow);
   const Launch l = closed_form().launch(trial.blow);
   if (shot < 0) return l;
-  if (!offset_[std::size_t(shot)]) throw std::invalid_argument("the base has no answer to this blow");
-  return plus(l, *offset_[std::size_t(shot)], 1);
+  if (!offset_[shot]) throw std::invalid_argument("the base has no answer to this blow");
+  return plus(l, *offset_[shot], 1);
 }
 
 void ShotModel::change(const Model& model, const double* parameters, Shot& trial) {
-  model.each(parameters, [&](const Parametrisation& f, std::span<const double> p) {
+  model.each(parameters, [&](const Parametrisation& f, Sizes p) {
     if (f.before) f.before(p, trial);
   });
 }
 
 void ShotModel::change(const Model& model, const double* parameters, const Shot& trial, Launch& launch) {
-  model.each(parameters, [&](const Parametrisation& f, std::span<const double> p) {
+  model.each(parameters, [&](const Parametrisation& f, Sizes p) {
     if (f.after) f.after(p, trial, launch);
   });
 }
@@ -169,7 +167,7 @@ Launch ShotModel::launched(Shot& trial, int shot, const Model& model, const doub
 
 double ShotModel::reading(const ShotChannel& channel, const Shot& trial, const Model& model, const double* parameters,
                           double value) const {
-  model.each(parameters, [&](const Parametrisation& f, std::span<const double> p) {
+  model.each(parameters, [&](const Parametrisation& f, Sizes p) {
     if (f.reading) value = f.reading(p, trial, channel.output, value);
   });
   return value;
@@ -180,21 +178,21 @@ double ShotModel::seen_angle(const Shot& trial, const Model& model, const double
 }
 
 void ShotModel::follow_seen(int shot) {
-  std::optional<Launch>& seen = trials_[std::size_t(shot)].seen;
+  std::optional<Launch>& seen = trials_[shot].seen;
   models::FlightAnswers& flight = flights_.emplace_back(models::FlightAnswers::Zero());
   try {
-    if (seen) flight = models::answers(models::fly(*seen, trials_[std::size_t(shot)].blow.ball, *flight_, kFlight));
+    if (seen) flight = models::answers(models::fly(*seen, trials_[shot].blow.ball, *flight_, kFlight));
   } catch (const std::invalid_argument&) { seen.reset(); } catch (const solvers::NonConvergence&) {
     seen.reset();
   }
   if (seen) return;
   for (int c = 0; c < width(); ++c)
-    if (of_flight(channels_[std::size_t(c)].output)) measured_(shot, c) = kNaN;
+    if (of_flight(channels_[c].output)) measured_(shot, c) = kNaN;
 }
 
 models::FlightConditions ShotModel::conditions(const Model& model, const double* parameters) const {
   models::FlightConditions changed = *flight_;
-  model.each(parameters, [&](const Parametrisation& f, std::span<const double> p) {
+  model.each(parameters, [&](const Parametrisation& f, Sizes p) {
     if (f.flight) f.flight(p, changed);
   });
   return changed;
@@ -204,7 +202,7 @@ models::FlightAnswers ShotModel::follow(const Shot& trial, int shot, const Model
                                         const Launch& launch) const {
   const bool changed = std::ranges::any_of(model.forms, [](const Parametrisation* f) { return bool(f->flight); });
   // Not seen: no reading is compared with what stands here.
-  if (shot >= 0 && (!changed || !trial.seen)) return flights_[std::size_t(shot)];
+  if (shot >= 0 && (!changed || !trial.seen)) return flights_[shot];
   try {
     return models::answers(models::fly(trial.seen.value_or(launch), trial.blow.ball, conditions(model, p), kFlight));
   } catch (const solvers::NonConvergence& e) { throw std::invalid_argument(e.what()); }
@@ -216,7 +214,7 @@ bool ShotModel::read(const Shot& trial, int shot, const Model& model, const doub
   models::FlightAnswers flight;
   if (flies_) flight = follow(trial, shot, model, parameters, launch);
   for (int c = 0; c < width(); ++c) {
-    const ShotChannel& channel = channels_[std::size_t(c)];
+    const ShotChannel& channel = channels_[c];
     const double base = of_flight(channel.output) ? flight[flight_answer(channel.output)] : get(launch, channel.output);
     double value = reading(channel, trial, model, parameters, base);
     if (shot >= 0 && is_angle(channel.output) && observed(shot, c))
@@ -273,7 +271,7 @@ bool ShotModel::predict(const Shot& trial, int shot, const Model& model, const d
 
 bool ShotModel::differences(const Shot& trial, int shot, const Model& model, const double* parameters, bool central,
                             double* out, double* derivative) const {
-  const double step = central ? kCentral : kForward;
+  const double step = central ? kStep : kForward;
   try {
     Shot near = trial;
     if (seen_ && shot >= 0 && !find_loft(near, shot, model, parameters)) return false;
@@ -293,9 +291,9 @@ bool ShotModel::differences(const Shot& trial, int shot, const Model& model, con
     for (const Parametrisation* f : model.forms)
       for (const Parameter& q : f->parameters) {
         const double share = f->flight ? std::max(step, kFlightStep) : step;
-        const double h = share * q.scale, at = moved[std::size_t(k)];
+        const double h = share * q.scale, at = moved[k];
         const auto look = [&](double x, double* values) {
-          moved[std::size_t(k)] = x;
+          moved[k] = x;
           bool good = false;
           if (f->before || seen_) {
             good = predict(near, shot, model, moved.data(), values);
@@ -306,14 +304,13 @@ bool ShotModel::differences(const Shot& trial, int shot, const Model& model, con
           } else {
             good = read(t, shot, model, moved.data(), l, values);
           }
-          moved[std::size_t(k)] = at;
+          moved[k] = at;
           return good;
         };
         if (!look(at + h, there.data())) return false;
         if (central && !look(at - h, here.data())) return false;
         for (int c = 0; c < m; ++c)
-          derivative[k * m + c] = central ? (there[std::size_t(c)] - here[std::size_t(c)]) / (2 * share)
-                                          : (there[std::size_t(c)] - out[c]) / share;
+          derivative[k * m + c] = central ? (there[c] - here[c]) / (2 * share) : (there[c] - out[c]) / share;
         ++k;
       }
     return true;
@@ -385,22 +382,21 @@ ShotModel::Shown ShotModel::shown(int shot, const Shot& t, const Model& model, c
   const double h = 1e-5;
   const Launch told = answer(t, shot);
   const auto off = [&](const Vec6& error) { return show(t, Surrogate::shifted(told, t, error)); };
-  for (int k = 0; k < 6; ++k) {
+  for (Eigen::Index k = 0; k < out.by_error.cols(); ++k) {
     const Eigen::VectorXd d = (off(h * Vec6::Unit(k)) - off(-h * Vec6::Unit(k))) / (2 * h);
     out.by_error.col(k) = d.head(m) - out.by_launch * d[m];
   }
   return out;
 }
 
-ShotModel::Found ShotModel::found_covariance(int shot, const Model& model, const double* parameters) const {
-  const int m = width();
+Eigen::MatrixXd ShotModel::found_covariance(int shot, const Model& model, const double* parameters) const {
   Shot t;
-  Found cov{Eigen::MatrixXd::Zero(m, m), Eigen::MatrixXd::Zero(m, m)};
+  Eigen::MatrixXd cov = Eigen::MatrixXd::Zero(width(), width());
   if (!asked(shot, model, parameters, t)) return cov;
   try {
     const Shown see = shown(shot, t, model, parameters);
-    if (seen_) cov.launch = std::pow(seen_->channel.noise, 2) * see.by_launch * see.by_launch.transpose();
-    if (surrogate_) cov.surrogate = see.by_error * surrogate_->error(t) * see.by_error.transpose();
+    if (seen_) cov += std::pow(seen_->channel.noise, 2) * see.by_launch * see.by_launch.transpose();
+    if (surrogate_) cov += see.by_error * surrogate_->error(t) * see.by_error.transpose();
   } catch (const std::invalid_argument&) {}
   return cov;
 }
@@ -414,8 +410,8 @@ Eigen::MatrixXd ShotModel::surrogate_errors(const std::vector<int>& shots, const
   std::vector<Shot> asks(shots.size());
   Eigen::MatrixXd show = Eigen::MatrixXd::Zero(n * m, 6);
   for (Eigen::Index i = 0; i < n; ++i) {
-    const int shot = shots[std::size_t(i)];
-    Shot& t = asks[std::size_t(i)];
+    const int shot = shots[i];
+    Shot& t = asks[i];
     if (!asked(shot, model, parameters, t)) t = trial(shot);  // shows nothing
     else show.middleRows(i * m, m) = whitening(shot) * shown(shot, t, model, parameters).by_error;
   }
@@ -435,7 +431,7 @@ void ShotModel::add_launch_noise(int shot, const models::FlightConditions& condi
   const models::FlightJacobian by = models::flight_jacobian(*seen, trial(shot).blow.ball, conditions);
   const double tilt = seen->spin_axis(), rate = seen->spin_rate();
   for (int c = 0; c < width(); ++c) {
-    const ShotChannel& launch = channels_[std::size_t(c)];
+    const ShotChannel& launch = channels_[c];
     if (of_flight(launch.output) || !observed(shot, c)) continue;
     models::FlightAnswers slope;
     switch (launch.output) {
@@ -452,7 +448,7 @@ void ShotModel::add_launch_noise(int shot, const models::FlightConditions& condi
     }
     const double sd = launch.noise * launch.si;
     const auto moved = [&](int a) {
-      const ShotChannel& f = channels_[std::size_t(a)];
+      const ShotChannel& f = channels_[a];
       return of_flight(f.output) ? sd * slope[flight_answer(f.output)] / f.si : 0.0;
     };
     for (int a = 0; a < width(); ++a) {
@@ -509,7 +505,7 @@ void ShotModel::set_covariance(const std::vector<Eigen::MatrixXd>& inputs, const
     else cov = scattered(i, model, parameters);
     if (flies_) add_launch_noise(i, conditions(model, parameters), cov);
     if (!inputs.empty()) {
-      const Eigen::MatrixXd& sx = inputs[std::size_t(i)];
+      const Eigen::MatrixXd& sx = inputs[i];
       unsigned mask = 0;
       for (int k = 0; k < kInputs; ++k) mask |= unsigned(sx(k, k) > 0) << k;
       if (mask) {
@@ -523,10 +519,7 @@ void ShotModel::set_covariance(const std::vector<Eigen::MatrixXd>& inputs, const
       cov += linear * linear.transpose() + 2 * square * square.transpose();
       expected_.row(i) -= square.transpose();  // heads that differ miss by that much on average
     }
-    if (surrogate_ || seen_) {
-      const Found found = found_covariance(i, model, parameters);
-      cov += found.launch + found.surrogate;
-    }
+    if (surrogate_ || seen_) cov += found_covariance(i, model, parameters);
     sigma_.row(i) = cov.diagonal().cwiseSqrt().transpose();
     std::vector<int> seen;
     for (int c = 0; c < m; ++c)
@@ -536,7 +529,7 @@ void ShotModel::set_covariance(const std::vector<Eigen::MatrixXd>& inputs, const
     const Eigen::MatrixXd W = dense::Cholesky(cov(seen, seen)).lower_inverse();
     double* out = whiten_.data() + std::ptrdiff_t(i) * m * m;
     for (int a = 0; a < k; ++a)
-      for (int b = 0; b <= a; ++b) out[seen[std::size_t(a)] * m + seen[std::size_t(b)]] = W(a, b);
+      for (int b = 0; b <= a; ++b) out[seen[a] * m + seen[b]] = W(a, b);
   }
 }
 
@@ -572,7 +565,7 @@ void ShotModel::linearise(int shot, const Model& model, const double* p, bool ce
   }
   for (int c = 0; c < m; ++c) {
     const bool seen = observed(shot, c);
-    scratch[std::size_t(c)] = seen ? scratch[std::size_t(c)] - expected_(shot, c) : 0.0;
+    scratch[c] = seen ? scratch[c] - expected_(shot, c) : 0.0;
     if (!seen) J.row(c).setZero();
   }
   const auto W = whitening(shot).triangularView<Eigen::Lower>();
@@ -588,8 +581,8 @@ Eigen::VectorXd ShotModel::whitened(const std::vector<int>& shots, const Model& 
   return z;
 }
 
-void ShotModel::linearise(const std::vector<int>& shots, const Model& model, const Eigen::VectorXd& p, bool central,
-                          Eigen::VectorXd& z, Eigen::MatrixXd& J) const {
+void ShotModel::linearise(const std::vector<int>& shots, const Model& model, const Eigen::VectorXd& p,
+                          Eigen::VectorXd& z, Eigen::MatrixXd& J, bool central) const {
   const int m = width();
   z.resize(std::ptrdiff_t(shots.size()) * m);
   J.resize(z.size(), p.size());
@@ -604,7 +597,7 @@ void ShotModel::linearise(const std::vector<int>& shots, const Model& model, con
 Eigen::MatrixXd ShotModel::jacobian(const std::vector<int>& shots, const Model& model, const Eigen::VectorXd& p) const {
   Eigen::MatrixXd J;
   Eigen::VectorXd z;
-  linearise(shots, model, p, true, z, J);
+  linearise(shots, model, p, z, J, true);
   return J;
 }
 

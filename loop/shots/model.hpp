@@ -17,6 +17,8 @@ namespace hosel::loop {
 const models::ImpactModel& closed_form();
 /// First slope of the search for a loft: launch angle per loft, about 0.8.
 inline constexpr double kLaunchPerLoft = 0.8;
+/// Noise units in every channel that a blow counts which cannot happen.
+inline constexpr double kImpossible = 100;
 /// One launch and so many times another, in every component.
 Launch plus(Launch a, const Launch& b, double times);
 /// Row of models::FlightAnswers.
@@ -51,9 +53,9 @@ class ShotModel {
 
   int shots() const { return int(trials_.size()); }
   int width() const { return int(channels_.size()); }
-  const ShotChannel& channel(int c) const { return channels_[std::size_t(c)]; }
-  ShotChannel& channel(int c) { return channels_[std::size_t(c)]; }
-  const Shot& trial(int shot) const { return trials_[std::size_t(shot)]; }
+  const ShotChannel& channel(int c) const { return channels_[c]; }
+  ShotChannel& channel(int c) { return channels_[c]; }
+  const Shot& trial(int shot) const { return trials_[shot]; }
   const Eigen::MatrixXd& measured() const { return measured_; }
   /// What was measured of a shot [SI], the launch angle that its loft is found from with it.
   std::map<Output, double> seen(int shot) const;
@@ -95,7 +97,7 @@ class ShotModel {
     varying_.push_back({std::move(form), parameter, sd});
   }
   /// Rows in a shot's mean; 1 where it is none.
-  int count(int shot) const { return count_.empty() ? 1 : count_[std::size_t(shot)]; }
+  int count(int shot) const { return count_.empty() ? 1 : count_[shot]; }
 
   /// Covariance of the inputs about the trial's values, per shot (8 x 8, SI; none: all exact); sets up the whitening
   /// Sigma_y + J_x Sigma_x J_x^T about the given model.
@@ -110,15 +112,13 @@ class ShotModel {
   /// Marginal standard deviation of a channel of a shot (instrument and inputs), header's unit.
   double sigma(int shot, int channel) const { return sigma_(shot, channel); }
 
-  /// Whitened residuals of some shots, one after the other (shots * width); a blow that cannot happen counts 100
-  /// noise units in every channel.
+  /// Whitened residuals of some shots, one after the other (shots * width); a blow that cannot happen counts
+  /// kImpossible.
   Eigen::VectorXd whitened(const std::vector<int>& shots, const Model& model, const Eigen::VectorXd& p) const;
-  /// The same with the derivatives per Parameter::scale, by one-sided differences; zero derivatives where the blow or
-  /// a neighbour cannot happen.
+  /// The same with the derivatives per Parameter::scale, by one-sided or central differences; zero derivatives where
+  /// the blow or a neighbour cannot happen.
   void linearise(const std::vector<int>& shots, const Model& model, const Eigen::VectorXd& p, Eigen::VectorXd& z,
-                 Eigen::MatrixXd& jacobian) const {
-    linearise(shots, model, p, false, z, jacobian);
-  }
+                 Eigen::MatrixXd& jacobian, bool central = false) const;
   /// The derivatives by central differences.
   Eigen::MatrixXd jacobian(const std::vector<int>& shots, const Model& model, const Eigen::VectorXd& p) const;
 
@@ -134,10 +134,7 @@ class ShotModel {
   double reading(const ShotChannel& channel, const Shot& trial, const Model& model, const double* parameters,
                  double value) const;
   /// Covariance by the noise of the launch angle and by the surrogate's error, header's units.
-  struct Found {
-    Eigen::MatrixXd launch, surrogate;
-  };
-  Found found_covariance(int shot, const Model& model, const double* parameters) const;
+  Eigen::MatrixXd found_covariance(int shot, const Model& model, const double* parameters) const;
   /// What the channels show of the launch angle that the loft follows (per its unit), and of an error of the answer
   /// about a shot as it is asked: width and width x 6, header's units. Throws as the base does.
   struct Shown {
@@ -163,8 +160,6 @@ class ShotModel {
   void whiten(int shot, const Model& model, const double* p, double* scratch, double* z) const;
   void linearise(int shot, const Model& model, const double* p, bool central, Eigen::Ref<Eigen::VectorXd> z,
                  Eigen::MatrixXd& J) const;
-  void linearise(const std::vector<int>& shots, const Model& model, const Eigen::VectorXd& p, bool central,
-                 Eigen::VectorXd& z, Eigen::MatrixXd& J) const;
   /// What the mean over inputs that differ lies beyond the answer to their mean, to second order.
   Eigen::VectorXd by_curvature(int shot, const Model& model, const double* parameters,
                                const Eigen::MatrixXd& covariance) const;

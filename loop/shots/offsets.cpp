@@ -5,8 +5,7 @@
 namespace hosel::loop {
 namespace {
 
-constexpr std::size_t kSingles = 6;  // the likeliest effects that an offset is tried beside
-constexpr double kOffsetPrice = 8;   // as of an offset alone: loop/shots/columns
+constexpr double kOffsetPrice = 8;  // as of an offset alone: loop/shots/columns
 
 /// Usual: assumed, places within 5 mm and directions within 1.5 deg of a good record. The loft's offset is an effect.
 std::optional<Parametrisation> offset_of(Input input) {
@@ -23,7 +22,7 @@ std::optional<Parametrisation> offset_of(Input input) {
   }
   Parametrisation form{
       .effect = "offset", .what = std::string(stem(input)), .parameters = {p}, .complexity = kOffsetPrice};
-  form.before = [input](std::span<const double> q, Shot& t) { set(t.blow, input, get(t.blow, input) + q[0]); };
+  form.before = [input](Sizes q, Shot& t) { set(t.blow, input, get(t.blow, input) + q[0]); };
   return form;
 }
 
@@ -37,40 +36,22 @@ std::optional<InputOffset> likelier_offset(const Problem& problem, const Study& 
   const auto price = [&](const Fit& f) {
     return criterion(f, study.rules) + study.rules.further_gain * double(f.model.forms.size() - declared);
   };
-  struct Core {
-    Model model;
-    Eigen::VectorXd p;
-  };
-  std::vector<Core> cores;
   const Fit& chosen = s.chosen;
-  for (std::size_t out = declared; out < chosen.model.forms.size(); ++out) {
-    Core core;
-    std::vector<double> p;
-    std::size_t at = 0;
-    for (std::size_t k = 0; k < chosen.model.forms.size(); ++k) {
-      const std::size_t size = chosen.model.forms[k]->parameters.size();
-      if (k != out) {
-        core.model = core.model.with(chosen.model.forms[k]);
-        for (std::size_t j = 0; j < size; ++j) p.push_back(chosen.p[Eigen::Index(at + j)]);
-      }
-      at += size;
-    }
-    core.p = as_vector(p);
-    cores.push_back(std::move(core));
-  }
+  std::vector<Fit> cores;
+  for (std::size_t out = declared; out < chosen.model.forms.size(); ++out)
+    cores.push_back(part_of(chosen, [&](const Parametrisation& form) { return &form != chosen.model.forms[out]; }));
   std::size_t singles = 0;
   for (const Candidate& c : s.candidates)
-    if (c.effects.size() == 1 && singles++ < kSingles) cores.push_back({c.fit.model, c.fit.p});
+    if (c.effects.size() == 1 && singles++ < kLikeliest) cores.push_back(c.fit);
 
   double least = price(chosen) - study.rules.tie;
   std::optional<InputOffset> found;
   for (const Input input : recorded) {
     const auto form = offset_of(input);
     if (!form) continue;
-    for (const Core& core : cores) {
-      Eigen::VectorXd start = Eigen::VectorXd::Zero(core.p.size() + 1);
-      start.head(core.p.size()) = core.p;
-      const Fit f = fit(problem, Part::select, core.model.with(&*form), {start}, 1, true);
+    for (const Fit& core : cores) {
+      const Fit start = beside(core, &*form);
+      const Fit f = fit(problem, Part::select, start.model, {start.p}, 1, true);
       if (f.at_bound || !(price(f) < least)) continue;
       least = price(f);
       found = {input, f.p[f.p.size() - 1], core.model.effects(declared)};

@@ -52,7 +52,7 @@ class Predictable {
     for (const Column& c : shots.columns) {
       if (!c.numeric || c.role == Role::bookkeeping || left_out.contains(c.name)) continue;
       const auto good = std::ranges::count_if(c.value, [](double x) { return std::isfinite(x); });
-      if (double(good) >= 0.8 * double(shots.rows())) columns_.push_back(&c);
+      if (double(good) >= kNearlyAll * double(shots.rows())) columns_.push_back(&c);
     }
     std::erase_if(rows, [&](std::size_t row) {
       return std::ranges::any_of(columns_, [&](const Column* c) { return !std::isfinite(c->value[row]); });
@@ -68,8 +68,8 @@ class Predictable {
     rounding_.resize(m);
     told_.resize(columns_.size());
     for (std::ptrdiff_t k = 0; k < m; ++k) {
-      const Column& c = *columns_[std::size_t(k)];
-      for (std::ptrdiff_t i = 0; i < n_; ++i) z_(i, k) = c.value[rows[std::size_t(i)]];
+      const Column& c = *columns_[k];
+      for (std::ptrdiff_t i = 0; i < n_; ++i) z_(i, k) = c.value[rows[i]];
       const auto declared = noise.find(c.name);
       const double own = declared == noise.end() ? 0 : declared->second * c.si;
       z_.col(k).array() -= z_.col(k).mean();
@@ -78,7 +78,7 @@ class Predictable {
       z_.col(k) /= sd_[k];
       rounding_[k] = rounding_deviation(c.resolution) / sd_[k];
       error_[k] = std::hypot(own / sd_[k], rounding_[k]);
-      told_[std::size_t(k)] = own > 0 && error_[k] < 0.5;  // else nothing can be told from its noise
+      told_[k] = own > 0 && error_[k] < 0.5;  // else nothing can be told from its noise
     }
   }
 
@@ -88,7 +88,7 @@ class Predictable {
     if (m < 3) return {};
     std::vector<Smooth> all;
     for (int y = 0; y < m; ++y)
-      if (told_[std::size_t(y)])
+      if (told_[y])
         for (Smooth& f : functions_of_others(y)) all.push_back(std::move(f));
     const double chance = std::log(double(tried_));
     const auto shown = [&](const Smooth& f) {
@@ -103,9 +103,9 @@ class Predictable {
     const auto best = std::ranges::max_element(
         all, {}, [&](const Smooth& f) { return std::ranges::includes(related, f.columns()) ? f.gain : -kInfinity; });
     const int column = best->of;
-    const Column& c = *columns_[std::size_t(column)];
+    const Column& c = *columns_[column];
     std::vector<std::string> from;
-    for (const int k : best->from) from.push_back(columns_[std::size_t(k)]->name);
+    for (const int k : best->from) from.push_back(columns_[k]->name);
     const std::string formula = fmt::format("a smooth function of {}", fmt::join(from, ", "));
     DerivedColumn d = derived_column(c, std::move(from), formula, best->scatter * sd_[column]);
     d.share = best->share > 1 - kBadRows ? 1 : best->share;
@@ -210,7 +210,7 @@ class Predictable {
     const double scatter =
         std::max(std::sqrt(apart.square().sum() / std::max(1.0, double(n_ - plane.cols()))), error_[target]);
     const ArrayXd elsewhere = -0.5 * (apart / scatter).square() - std::log(scatter) - kLogRootTwoPi;
-    const double numbers = 0.5 * std::log(double(n_)), by_plane = elsewhere.sum() - numbers * double(plane.cols());
+    const double numbers = std::log(double(n_)) / 2, by_plane = elsewhere.sum() - numbers * double(plane.cols());
 
     // All sets of up to three columns, the likeliest three with a fourth.
     std::vector<std::vector<int>> sets;
@@ -262,8 +262,8 @@ class Predictable {
   std::vector<Smooth> settled(int target, const VectorXd& y, const ArrayXd& elsewhere,
                               const std::vector<std::vector<int>>& sets) const {
     // Of columns on coarse grids some rows agree more closely than the last digit allows: by chance.
-    const double numbers = 0.5 * std::log(double(n_)),
-                 least = std::max(1e-3 * std::max(error_[target], 1e-3), rounding_[target]);
+    const double numbers = std::log(double(n_)) / 2,
+                 least = std::max(kNothing * std::max(error_[target], kNothing), rounding_[target]);
     std::vector<Smooth> all;
     for (const std::vector<int>& from : sets) {
       const MatrixXd a = features(from, 2);

@@ -20,7 +20,6 @@
 namespace hosel::loop {
 namespace {
 
-constexpr std::size_t kFewestToTest = 4;    // training rows that can test anything
 constexpr std::size_t kMostToSelect = 450;  // what names an effect does not need thousands, whose cost would be felt
 constexpr double kMixture = 20;             // least gain of two populations over one
 
@@ -72,7 +71,7 @@ void ShotProblem::read(const std::vector<DerivedColumn>& derived, std::optional<
     int rows = 0, read = 0;
     for (const int row : inputs_.row_of)
       if (!bad.contains(row) && !(held_rows_ && held_rows_->contains(row)))
-        ++rows, read += std::isfinite(c->value[std::size_t(row)]);
+        ++rows, read += std::isfinite(c->value[row]);
     if (!case_.noise.contains(c->name) && !case_.averages && read < kFewestOfRows && read < rows) {
       notes_.push_back(fmt::format("{}: its noise is not declared, and {} readings in {} rows do not tell it: not used",
                                    c->name, read, rows));
@@ -104,14 +103,13 @@ void ShotProblem::read(const std::vector<DerivedColumn>& derived, std::optional<
   inputs_.covariance = std::move(good.covariance);
   Eigen::MatrixXd measured(std::ptrdiff_t(good.trials.size()), std::ptrdiff_t(channels.size()));
   for (Eigen::Index i = 0; i < measured.rows(); ++i) {
-    const std::size_t row = std::size_t(inputs_.row_of[std::size_t(i)]);
-    if (case_.flight) good.trials[std::size_t(i)].seen = seen_launch(shots, row);
-    for (Eigen::Index k = 0; k < measured.cols(); ++k) measured(i, k) = columns[std::size_t(k)]->native(row);
+    const std::size_t row = std::size_t(inputs_.row_of[i]);
+    if (case_.flight) good.trials[i].seen = seen_launch(shots, row);
+    for (Eigen::Index k = 0; k < measured.cols(); ++k) measured(i, k) = columns[k]->native(row);
   }
   if (seen) {
     seen->value.resize(measured.rows());
-    for (Eigen::Index i = 0; i < measured.rows(); ++i)
-      seen->value[i] = seen_in->native(std::size_t(inputs_.row_of[std::size_t(i)]));
+    for (Eigen::Index i = 0; i < measured.rows(); ++i) seen->value[i] = seen_in->native(std::size_t(inputs_.row_of[i]));
     notes_.push_back(
         fmt::format("the loft of every shot is found from its {}; the recorded one is not used", seen_in->name));
   }
@@ -123,7 +121,7 @@ void ShotProblem::read(const std::vector<DerivedColumn>& derived, std::optional<
                                        std::move(measured), case_.surrogate, std::move(seen), case_.flight);
   if (case_.averages) {
     std::vector<int> count;
-    for (const int row : inputs_.row_of) count.push_back(case_.averages->count[std::size_t(row)]);
+    for (const int row : inputs_.row_of) count.push_back(case_.averages->count[row]);
     model_->set_scatter(case_.averages->scatter, case_.averages->degrees, std::move(count));
     notes_.insert(notes_.end(), case_.averages->notes.begin(), case_.averages->notes.end());
   }
@@ -132,7 +130,7 @@ void ShotProblem::read(const std::vector<DerivedColumn>& derived, std::optional<
   std::vector<double> out(static_cast<std::size_t>(width()));
   for (int i = 0; i < model_->shots(); ++i) {
     if (model_->predict(i, Model{}, nullptr, out.data())) usable_.push_back(i);
-    else flag(inputs_.row_of[std::size_t(i)], "", "the base model has no answer: the head moves away from the ball", i);
+    else flag(inputs_.row_of[i], "", "the base model has no answer: the head moves away from the ball", i);
   }
 }
 
@@ -196,8 +194,7 @@ std::vector<Parametrisation> ShotProblem::forms() const {
 void ShotProblem::split(const std::set<int>& without) {
   Rows all;
   if (held_rows_) {
-    for (const int i : usable_)
-      (held_rows_->contains(inputs_.row_of[std::size_t(i)]) ? all.holdout : all.train).push_back(i);
+    for (const int i : usable_) (held_rows_->contains(inputs_.row_of[i]) ? all.holdout : all.train).push_back(i);
   } else {
     // The split is made over all usable rows, so that screening does not reshuffle it.
     all = split_rows(case_, *model_, inputs_.row_of, usable_);
@@ -213,8 +210,8 @@ std::vector<Problem::Row> ShotProblem::rows() const {
   std::vector<Row> all;
   for (const bool holdout : {false, true})
     for (const int i : holdout ? rows_.holdout : rows_.train) {
-      const int row = inputs_.row_of[std::size_t(i)];
-      all.push_back({i, row, case_.shots.id[std::size_t(row)], holdout});
+      const int row = inputs_.row_of[i];
+      all.push_back({i, row, case_.shots.id[row], holdout});
     }
   std::ranges::sort(all, {}, &Row::index);
   return all;
@@ -227,7 +224,7 @@ std::vector<Flag> ShotProblem::flags() const {
   const std::vector<RowFlag>& all = flags_.empty() ? early_ : flags_;
   for (const RowFlag& f : all) own = std::max(own, f.finding);
   for (const RowFlag& f : all)
-    told.push_back({f.row, case_.shots.id[std::size_t(f.row)], f.column, f.reason, f.finding ? f.finding : ++own});
+    told.push_back({f.row, case_.shots.id[f.row], f.column, f.reason, f.finding ? f.finding : ++own});
   std::ranges::stable_sort(told, {}, &Flag::row);
   std::map<int, int> number;
   for (Flag& f : told) f.finding = number.emplace(f.finding, int(number.size()) + 1).first->second;
@@ -367,7 +364,7 @@ void ShotProblem::estimate_noise(const Fit* at) {
         for (const int i : rows_.train)
           from_inputs += std::max(0.0, model_->sigma(i, c) * model_->sigma(i, c) - ch.noise * ch.noise) / rows;
     }
-    const double floor = std::max(ch.least_noise(), 1e-3 * sd);
+    const double floor = std::max(ch.least_noise(), kNothing * sd);
     ch.noise = std::max(std::sqrt(std::max(sd * sd - from_inputs, 0.09 * sd * sd)), floor);
   }
 }
@@ -379,7 +376,7 @@ StructureMap ShotProblem::structure(const Fit& fit, const Fit& near, const Eigen
   view.column = [&](int c, const Eigen::VectorXd& value) {
     Eigen::VectorXd a = Eigen::VectorXd::Zero(value.size() * width());
     for (Eigen::Index i = 0; i < value.size(); ++i)
-      if (const int shot = select_[std::size_t(i)]; model_->observed(shot, c))
+      if (const int shot = select_[i]; model_->observed(shot, c))
         a.segment(i * width(), width()) = model_->whitening(shot).col(c) * value[i];
     return a;
   };
@@ -391,8 +388,7 @@ std::optional<Remainder> ShotProblem::remainder(const Fit& fit) const {
   std::vector<int> group(static_cast<std::size_t>(model_->shots()));
   const Column* by = case_.split.by.empty() ? nullptr : case_.shots.find(case_.split.by);
   const Groups clusters = by ? groups(*by) : Groups{};
-  for (int i = 0; i < model_->shots(); ++i)
-    group[std::size_t(i)] = by ? clusters.of_row[std::size_t(inputs_.row_of[std::size_t(i)])] : i;
+  for (int i = 0; i < model_->shots(); ++i) group[i] = by ? clusters.of_row[inputs_.row_of[i]] : i;
   return loop::remainder(*model_, case_.shots, inputs_.row_of, rows_.train, group, fit);
 }
 
@@ -448,7 +444,7 @@ std::vector<Mixture> parted_by(const Parametrisation& f, const Fit& base, const 
   const auto n = Eigen::Index(f.parameters.size());
   Eigen::VectorXd low(n), high(n), scale(n);
   for (Eigen::Index k = 0; k < n; ++k) {
-    const Parameter& q = f.parameters[std::size_t(k)];
+    const Parameter& q = f.parameters[k];
     scale[k] = q.scale;
     low[k] = q.min / q.scale;
     high[k] = q.max / q.scale;
@@ -542,8 +538,8 @@ std::optional<Location> ShotProblem::two_populations(const Selection& s) const {
   std::array<double, 2> sum{}, values{};
   for (std::size_t i = 0; i < rows.size(); ++i)
     if (const double x = raw(rows[i], most); std::isfinite(x)) {
-      sum[std::size_t(best->second[i])] += x;
-      values[std::size_t(best->second[i])] += 1;
+      sum[best->second[i]] += x;
+      values[best->second[i]] += 1;
     }
   const double by_channel = std::abs(sum[1] / values[1] - sum[0] / values[0]);
   std::string apart = "two balls, players or settings that no column tells apart";
@@ -554,7 +550,7 @@ std::optional<Location> ShotProblem::two_populations(const Selection& s) const {
     for (std::size_t k = 0; k < g.name.size(); ++k) {
       double same = 0;
       for (std::size_t i = 0; i < rows.size(); ++i)
-        same += (g.of_row[std::size_t(inputs_.row_of[std::size_t(rows[i])])] == int(k)) == bool(best->second[i]);
+        same += (g.of_row[inputs_.row_of[rows[i]]] == int(k)) == bool(best->second[i]);
       if (std::max(same, double(rows.size()) - same) > alike * double(rows.size()))
         apart = fmt::format("nearly those of {} '{}', and the others", c.name, g.name[k]);
     }
@@ -654,7 +650,7 @@ std::vector<Location> ShotProblem::doubts(const Selection& s) const {
   std::vector<std::vector<double>> size(static_cast<std::size_t>(width()));
   for (std::size_t i = 0; i < used.size(); ++i)
     for (int c = 0; c < width(); ++c)
-      if (model_->observed(used[i], c)) size[std::size_t(c)].push_back(std::abs(z[std::ptrdiff_t(i) * width() + c]));
+      if (model_->observed(used[i], c)) size[c].push_back(std::abs(z[std::ptrdiff_t(i) * width() + c]));
   // Too few shots to refute the declared noise are too few to call what goes beyond it noise.
   const Eigen::MatrixXd residuals = this->residuals(s.chosen.model, s.chosen.p);
   for (int c = 0; c < width(); ++c)
@@ -663,7 +659,7 @@ std::vector<Location> ShotProblem::doubts(const Selection& s) const {
                       fmt::format("scatters {:.1f} times as much as the {}", ratio,
                                   channel(c).repeated ? "rows that it is the mean of tell" : "noise declared")});
   for (int c = 0; c < width(); ++c)
-    if (const double middle = median(size[std::size_t(c)]); middle > many)
+    if (const double middle = median(size[c]); middle > many)
       told.push_back({channel(c).name, "", fmt::format("missed by {:.1f} noise scales on half of the shots", middle)});
   const FarOff far = far_off(s);
   if (const double share = double(far.lost) / far.all; share >= kLost)

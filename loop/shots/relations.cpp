@@ -19,14 +19,6 @@ namespace {
 constexpr double kLeastHeld = 0.35;  // of the rows
 constexpr std::size_t kMostRelated = 300;
 
-struct RelationSource {
-  const Column* column;
-  std::vector<double> x;  ///< SI, so that no relation hangs on a unit; NaN where missing
-  double step;            ///< of the recording, SI
-  double spread;
-  bool divides;  ///< keeps its sign and stays away from zero
-};
-
 /// y = formula(x, k) on some rows: how many, and how much they stand out.
 struct Relation {
   int target = 0;
@@ -59,7 +51,7 @@ double edge_evidence(const std::vector<double>& residual, double t) {
         count += own[i];
       }
       if (!(sum > 0)) return t;
-      scale = std::max(std::sqrt(sum / count), 1e-3 * t);
+      scale = std::max(std::sqrt(sum / count), kNothing * t);
     }
     return scale;
   };
@@ -68,8 +60,8 @@ double edge_evidence(const std::vector<double>& residual, double t) {
   double scatter = scale_of(std::sqrt(rms)), alone = 0;
   for (const double r : residual) alone += std::log(student(r, scatter));
   double share = 0.5, both = 0;
-  const double most = 1 - 0.5 / double(residual.size());
-  for (int pass = 0; pass < 40; ++pass) {
+  const double most = 1 - 1 / (2 * double(residual.size()));
+  for (int pass = 0; pass < kPasses; ++pass) {
     double held = 0;
     both = 0;
     for (std::size_t i = 0; i < residual.size(); ++i) {
@@ -103,24 +95,9 @@ class Relations {
  public:
   explicit Relations(const Shots& shots) {
     const std::vector<std::size_t> rows = evenly(rows_by_value(shots), kMostRelated);
-    for (const Column& c : shots.columns) {
-      if (!c.numeric || c.role == Role::bookkeeping) continue;
-      RelationSource s{&c, {}, c.resolution, 0, false};
-      std::vector<double> seen;
-      for (const std::size_t row : rows) {
-        s.x.push_back(c.value[row]);
-        if (std::isfinite(s.x.back())) seen.push_back(s.x.back());
-      }
-      if (seen.size() < kFewestToLearn || seen.size() * 2 < rows.size()) continue;
-      std::ranges::sort(seen);
-      const auto at = [&](double q) { return at_share(seen, q); };
-      s.spread = at(0.9) - at(0.1);
-      // A coarse column cannot show a formula.
-      if (!(s.spread > 5 * s.step)) continue;
-      s.divides = at(0.05) * at(0.95) > 0 && std::max(std::abs(at(0.05)), std::abs(at(0.95))) <
-                                                 8 * std::min(std::abs(at(0.05)), std::abs(at(0.95)));
-      sources_.push_back(std::move(s));
-    }
+    sources_ = formula_columns(shots, rows, std::max(kFewestToLearn, (rows.size() + 1) / 2));
+    // A coarse column cannot show a formula.
+    std::erase_if(sources_, [](const FormulaColumn& s) { return !(s.spread() > 5 * s.step()); });
   }
 
   std::vector<Relation> run() {
@@ -140,7 +117,7 @@ class Relations {
     }
     std::ranges::stable_sort(found_, std::ranges::greater{}, [&](const Relation& r) {
       const double most = best.at(r.columns());
-      return std::tuple(most, r.score() > 0.8 * most, -rank_if_computed(column(r.target)), r.score());
+      return std::tuple(most, r.score() > kNearlyAll * most, -rank_if_computed(column(r.target)), r.score());
     });
     return found_;
   }
@@ -148,21 +125,22 @@ class Relations {
   const Column& column(int k) const { return *source(k).column; }
 
  private:
-  std::vector<RelationSource> sources_;
+  std::vector<FormulaColumn> sources_;
   std::vector<Relation> found_;
   long tried_ = 0;  ///< formulas
 
-  const RelationSource& source(int k) const { return sources_[std::size_t(k)]; }
+  const FormulaColumn& source(int k) const { return sources_[k]; }
   int count() const { return int(sources_.size()); }
-  double x(int k, std::size_t row) const { return source(k).x[row]; }
-  std::size_t rows() const { return sources_.empty() ? 0 : sources_[0].x.size(); }
+  double x(int k, std::size_t row) const { return source(k).x[Eigen::Index(row)]; }
+  std::size_t rows() const { return sources_.empty() ? 0 : std::size_t(sources_[0].x.size()); }
 
   bool same_dimension(int a, int b) const {
     const auto p = split_unit(header(a)).unit, q = split_unit(header(b)).unit;
     return p && q && p->dimension == q->dimension;
   }
   double si(int k) const { return column(k).si; }
-  double half_step(int k) const { return 0.5 * source(k).step; }
+  double half_step(int k) const { return 0.5 * source(k).step(); }
+  bool divides(int k) const { return may_divide(at_share(source(k).rising, 0.05), at_share(source(k).rising, 0.95)); }
   /// A number and the header that it multiplies, as they stand in the units of the headers: none where it is one.
   std::string times(double number, int k, int y) const {
     number *= si(k) / si(y);
@@ -182,7 +160,7 @@ class Relations {
   /// zeros where nothing was read) count once.
   void judge(int y, const std::vector<int>& from, const std::string& text, const std::vector<Residual>& residual) {
     ++tried_;
-    const double t = half_step(y) * 1.02 + kRoundOff * source(y).spread;
+    const double t = half_step(y) * 1.02 + kRoundOff * source(y).spread();
     const auto within = [&](const Residual& r) { return std::abs(r.value) <= t; };
     const int rows = int(std::ranges::count_if(residual, within));
     if (residual.size() < kFewestToLearn || rows < kLeastHeld * double(residual.size())) return;
@@ -253,7 +231,7 @@ class Relations {
               [&](double k) {
                 return fmt::format("{:.5g} * {} * {}", k * si(a) * si(b) / si(y), header(a), header(b));
               });
-        if (source(b).divides)
+        if (divides(b))
           linear(
               y, {a, b}, {}, zero, [&](std::size_t i) { return x(a, i) / x(b, i); },
               [&](double k) {
@@ -274,7 +252,7 @@ class Relations {
         }
         if (!same_dimension(y, a)) continue;
         for (int c = 0; c < count(); ++c)
-          if (c != y && c != a && c != b && source(c).divides)
+          if (c != y && c != a && c != b && divides(c))
             linear(
                 y, {a, b, c}, {}, xa, [&](std::size_t i) { return x(b, i) / x(c, i); },
                 [&](double k) {

@@ -70,7 +70,6 @@ struct OfChannel {
 
 OfChannel of_channel(const ShotModel& model, int c, const std::vector<int>& rows, const std::vector<int>& part,
                      const RemainderInputs& in, const Eigen::VectorXd& residual) {
-  constexpr double far = 4;  // scales
   std::vector<int> seen;
   std::vector<double> r;
   for (const int i : rows)
@@ -84,15 +83,14 @@ OfChannel of_channel(const ShotModel& model, int c, const std::vector<int>& rows
   const auto n = std::ptrdiff_t(seen.size());
   Eigen::MatrixXd x(n, in.x.cols()), y(n, 1);
   for (std::ptrdiff_t i = 0; i < n; ++i) {
-    x.row(i) = in.x.row(seen[std::size_t(i)]);
-    y(i, 0) = std::clamp((r[std::size_t(i)] - middle) / scale, -far, far);
+    x.row(i) = in.x.row(seen[i]);
+    y(i, 0) = std::clamp((r[i] - middle) / scale, -kFence, kFence);
   }
   // Lengths and nugget too are those of the other parts: chosen on all rows they would know what they foretell.
   Eigen::VectorXd others(n);
   for (int k = 0; k < kParts; ++k) {
     std::vector<std::ptrdiff_t> in_part, outside;
-    for (std::ptrdiff_t i = 0; i < n; ++i)
-      (part[std::size_t(seen[std::size_t(i)])] == k ? in_part : outside).push_back(i);
+    for (std::ptrdiff_t i = 0; i < n; ++i) (part[seen[i]] == k ? in_part : outside).push_back(i);
     if (in_part.empty() || outside.size() < kFewestToLearn / 2) return {};
     const Eigen::MatrixXd from = x(outside, Eigen::all), of = y(outside, Eigen::all);
     const solvers::Kriging process = process_of(from, of);
@@ -100,7 +98,7 @@ OfChannel of_channel(const ShotModel& model, int c, const std::vector<int>& rows
   }
   double fall = 0;
   for (std::ptrdiff_t i = 0; i < n; ++i) {
-    const double sigma = model.sigma(seen[std::size_t(i)], c), z = (scale * y(i, 0) + middle) / sigma,
+    const double sigma = model.sigma(seen[i], c), z = (scale * y(i, 0) + middle) / sigma,
                  g = (scale * others[i] + middle) / sigma;
     fall += z * z - (z - g) * (z - g);
   }
@@ -113,7 +111,7 @@ OfChannel of_channel(const ShotModel& model, int c, const std::vector<int>& rows
   const auto value = [&](const Eigen::VectorXd& at) { return scale * process(at)[0] + middle; };
   for (int i = 0; i < model.shots(); ++i) out.value[i] = value(in.x.row(i).transpose());
   for (std::ptrdiff_t i = 0; i < n; ++i) {
-    const double g = out.value[seen[std::size_t(i)]];
+    const double g = out.value[seen[i]];
     whole += g * g / double(n);
     for (Eigen::Index k = 0; k < x.cols(); ++k) {
       Eigen::VectorXd at = x.row(i).transpose();
@@ -125,10 +123,10 @@ OfChannel of_channel(const ShotModel& model, int c, const std::vector<int>& rows
   Eigen::Index most = 0;
   without.maxCoeff(&most);
   out.place.size = std::sqrt(whole);
-  out.place.along = in.name[std::size_t(most)];
+  out.place.along = in.name[most];
   out.place.share = whole > 0 ? std::min(1.0, without[most] / whole) : 0;
-  out.place.at = in.middle[std::size_t(most)] + in.unit[std::size_t(most)] * x(std::ptrdiff_t(out.place.at), most);
-  for (std::ptrdiff_t i = 0; i < n; ++i) out.value[seen[std::size_t(i)]] = scale * others[i] + middle;
+  out.place.at = in.middle[most] + in.unit[most] * x(std::ptrdiff_t(out.place.at), most);
+  for (std::ptrdiff_t i = 0; i < n; ++i) out.value[seen[i]] = scale * others[i] + middle;
   return out;
 }
 
@@ -141,8 +139,8 @@ std::optional<Remainder> remainder(const ShotModel& model, const Shots& shots, c
   std::map<int, int> part_of;
   std::vector<int> part(group.size(), 0);
   for (const int i : rows) {
-    const auto known = part_of.try_emplace(group[std::size_t(i)], int(part_of.size()) % kParts).first;
-    part[std::size_t(i)] = known->second;
+    const auto known = part_of.try_emplace(group[i], int(part_of.size()) % kParts).first;
+    part[i] = known->second;
   }
   if (rows.size() < kFewestToLearn || part_of.size() < kParts) return {};
   const RemainderInputs in(columns_of(shots, row_of, model), shots, rows);

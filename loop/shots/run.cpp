@@ -7,6 +7,7 @@
 #include <set>
 
 #include "golf/units.hpp"
+#include "loop/shots/columns.hpp"
 #include "loop/shots/offsets.hpp"
 #include "loop/shots/problem.hpp"
 #include "loop/shots/recurring.hpp"
@@ -26,30 +27,26 @@ std::vector<Input> recorded(const Shots& shots) {
 /// The case with that column as it should read, and what is told of it: names beside it are those of the rest.
 std::pair<ShotCase, WrongColumn> set_right(const ShotCase& c, const InputOffset& off) {
   ShotCase right = c;
-  const std::string name = c.shots.find_stem(stem(off.input))->name;
-  WrongColumn told{name, "offset", ""};
-  for (Column& column : right.shots.columns)
-    if (column.name == name) {
-      for (double& x : column.value) x += off.size;
-      const auto unit = split_unit(name).unit;
-      told.text = fmt::format("{} reads {:.4g} {} too {} throughout{}", name, std::abs(off.size) / column.si,
-                              unit ? unit->suffix : "", off.size < 0 ? "high" : "low",
-                              off.beside.empty() ? "" : fmt::format(", beside {}", fmt::join(off.beside, " and ")));
-    }
+  Column& column = *right.shots.find(c.shots.find_stem(stem(off.input))->name);
+  for (double& x : column.value) x += off.size;
+  const auto unit = split_unit(column.name).unit;
+  WrongColumn told{column.name, "offset",
+                   fmt::format("{} reads {:.4g} {} too {} throughout{}", column.name, std::abs(off.size) / column.si,
+                               unit ? unit->suffix : "", off.size < 0 ? "high" : "low",
+                               off.beside.empty() ? "" : fmt::format(", beside {}", fmt::join(off.beside, " and ")))};
   return {std::move(right), std::move(told)};
 }
 
 /// A column computed from readings carries their noise, so that their residuals follow it whatever is true.
 ShotCase without_computed(const ShotCase& given, const std::vector<DerivedColumn>& derived) {
   ShotCase c = given;
+  const auto reading = [&](const std::string& name) {
+    const Column* from = given.shots.find(name);
+    return from && from->role == Role::output;
+  };
   for (const DerivedColumn& d : derived)
-    for (Column& column : c.shots.columns)
-      if (column.name == d.column && column.role == Role::other &&
-          std::ranges::any_of(d.from, [&](const std::string& name) {
-            const Column* from = c.shots.find(name);
-            return from && from->role == Role::output;
-          }))
-        column.role = Role::bookkeeping;
+    if (Column* column = c.shots.find(d.column); column && column->role == Role::other)
+      if (std::ranges::any_of(d.from, reading)) column->role = Role::bookkeeping;
   return c;
 }
 
@@ -106,8 +103,7 @@ Shots without_flagged(const Shots& shots, const LoopResult& r, const std::set<in
   Shots clean = shots;
   for (Column& c : clean.columns)
     for (const auto& f : r.flagged)
-      if (c.numeric && std::size_t(f.row) < c.value.size() && (!of || of->contains(f.row)))
-        c.value[std::size_t(f.row)] = kNaN;
+      if (c.numeric && std::size_t(f.row) < c.value.size() && (!of || of->contains(f.row))) c.value[f.row] = kNaN;
   return clean;
 }
 
@@ -156,7 +152,7 @@ void leave_one_out(const ShotCase& c, const Columns& columns, const std::vector<
     const std::vector<int> from = places_in(fold, whole);
     const auto in_order = [&](const std::vector<double>& values) {
       std::vector<double> out;
-      for (const int place : from) out.push_back(place < 0 ? kNaN : values[std::size_t(place)]);
+      for (const int place : from) out.push_back(place < 0 ? kNaN : values[place]);
       return out;
     };
     for (const UsedRow& u : fold.rows)
@@ -170,8 +166,8 @@ void leave_one_out(const ShotCase& c, const Columns& columns, const std::vector<
                           .with_remainder = in_order(u.with_remainder)});
     for (std::size_t j = 0; j < expected.size(); ++j) {
       const int at = from[j];
-      if (at < 0 || !std::isfinite(fold.channels[std::size_t(at)].expected)) continue;
-      const ChannelResult& ch = fold.channels[std::size_t(at)];
+      if (at < 0 || !std::isfinite(fold.channels[at].expected)) continue;
+      const ChannelResult& ch = fold.channels[at];
       expected[j].first += ch.before.holdout * std::pow(ch.expected, 2);
       expected[j].second += ch.before.holdout;
     }
@@ -222,9 +218,7 @@ void leave_one_out(const ShotCase& c, const Columns& columns, const std::vector<
 ShotCase without_numbers(const ShotCase& given, const std::vector<Recurring>& found) {
   ShotCase c = given;
   for (const Recurring& r : found) {
-    for (Column& column : c.shots.columns)
-      if (column.name == r.column)
-        for (const int row : r.rows) column.value[std::size_t(row)] = kNaN;
+    for (const int row : r.rows) c.shots.find(r.column)->value[row] = kNaN;
     c.notes.push_back(fmt::format("{}: {}: no readings, left out", r.column, r.reason));
   }
   return c;
@@ -236,8 +230,7 @@ void tell(const std::vector<Recurring>& found, const Shots& shots, LoopResult& r
   for (const Flag& f : result.flagged) finding = std::max(finding, f.finding);
   for (const Recurring& r : found) {
     ++finding;
-    for (const int row : r.rows)
-      result.flagged.push_back({row, shots.id[std::size_t(row)], r.column, r.reason, finding});
+    for (const int row : r.rows) result.flagged.push_back({row, shots.id[row], r.column, r.reason, finding});
   }
 }
 

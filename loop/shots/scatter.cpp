@@ -14,7 +14,7 @@ double smooth_scatter(const ShotModel& model, const std::vector<int>& rows, int 
   for (const int i : rows)
     if (std::isfinite(residuals(i, channel))) seen.push_back(i);
   const auto n = std::ptrdiff_t(seen.size());
-  if (n < 4) return 0;
+  if (seen.size() < kFewestToTest) return 0;
   std::vector<Eigen::VectorXd> basis = {Eigen::VectorXd::Ones(n)};
   const auto add = [&](Eigen::VectorXd x) {
     if (std::ptrdiff_t(basis.size()) * 3 >= n) return;
@@ -25,14 +25,14 @@ double smooth_scatter(const ShotModel& model, const std::vector<int>& rows, int 
   for (const int power : {1, 2})
     for (int k = 0; k < kInputs; ++k) {
       Eigen::VectorXd x(n);
-      for (std::ptrdiff_t i = 0; i < n; ++i) x[i] = get(model.trial(seen[std::size_t(i)]).blow, Input(k));
+      for (std::ptrdiff_t i = 0; i < n; ++i) x[i] = get(model.trial(seen[i]).blow, Input(k));
       if (power == 2) x = Eigen::VectorXd((x.array() - x.mean()).square());
       add(x);
     }
   Eigen::MatrixXd A(n, std::ptrdiff_t(basis.size()));
   for (std::size_t k = 0; k < basis.size(); ++k) A.col(std::ptrdiff_t(k)) = basis[k];
   Eigen::VectorXd y(n), w = Eigen::VectorXd::Ones(n);
-  for (std::ptrdiff_t i = 0; i < n; ++i) y[i] = residuals(seen[std::size_t(i)], channel);
+  for (std::ptrdiff_t i = 0; i < n; ++i) y[i] = residuals(seen[i], channel);
   double scale = 0;
   for (int pass = 0; pass < 12; ++pass) {
     const Eigen::MatrixXd WA = w.cwiseSqrt().asDiagonal() * A;

@@ -83,7 +83,7 @@ class Row {
       other = other || use->input >= 0;
     }
     if (!(other ? model_.predict(t, shot_, fit_.model, fit_.p.data(), r.data()) : predicted_))
-      return 1e4 * model_.width();
+      return kImpossible * kImpossible * model_.width();
     for (int c = 0; c < model_.width(); ++c) r[c] = model_.observed(shot_, c) ? r[c] - y[c] : 0.0;
     return (model_.whitening(shot_) * r).squaredNorm();
   }
@@ -205,7 +205,7 @@ void gather_clusters(const ShotModel& model, const Shots& shots, const std::vect
                      std::vector<RowFlag>& flags) {
   int finding = 0;
   std::map<int, int> shot_of;
-  for (int i = 0; i < model.shots(); ++i) shot_of[row_of[std::size_t(i)]] = i;
+  for (int i = 0; i < model.shots(); ++i) shot_of[row_of[i]] = i;
   std::map<int, std::size_t> flag_of;
   for (std::size_t k = 0; k < flags.size(); ++k) flag_of[flags[k].row] = k;
   for (const Column& c : shots.columns) {
@@ -215,7 +215,7 @@ void gather_clusters(const ShotModel& model, const Shots& shots, const std::vect
     std::vector<std::vector<int>> of_group(g.name.size());
     for (std::size_t row = 0; row < g.of_row.size(); ++row)
       if (g.of_row[row] >= 0 && (shot_of.contains(int(row)) || flag_of.contains(int(row))))
-        of_group[std::size_t(g.of_row[row])].push_back(int(row));
+        of_group[g.of_row[row]].push_back(int(row));
     for (std::size_t k = 0; k < g.name.size(); ++k) {
       const std::vector<int>& members = of_group[k];
       std::vector<std::size_t> bad;
@@ -291,7 +291,7 @@ Screening screen(const ShotModel& model, const Shots& shots, const std::vector<i
                  perhaps = bulk * quantile(complement(law, kPerhaps));
     if (distance < perhaps) continue;
 
-    const std::size_t file_row = std::size_t(row_of[std::size_t(i)]);
+    const std::size_t file_row = std::size_t(row_of[i]);
     std::vector<const ColumnUse*> present;
     for (const ColumnUse& u : uses)
       if (std::isfinite(u.column->value[file_row])) present.push_back(&u);
@@ -319,32 +319,23 @@ Screening screen(const ShotModel& model, const Shots& shots, const std::vector<i
   }
   gather_clusters(model, shots, row_of, fit, flags);
 
-  // Few rows of a set slip. Where more seem to, any row far off finds some slip that fits: only the plainest stay.
   std::map<int, int> of_finding;
   for (const RowFlag& f : flags) ++of_finding[f.finding];
   const auto single = [&](const RowFlag& f) { return f.slip && f.shot >= 0 && of_finding[f.finding] == 1; };
-  const auto widespread = [&](const std::map<std::string, int>& of_column) {
+  // Of flags that are more than exceptions only the farthest stay; the column that most of them are in is told.
+  const auto thin = [&](double exceptions, double nearer, const auto& of) {
+    std::map<std::string, int> of_column;
+    for (const RowFlag& f : flags)
+      if (of(f)) ++of_column[f.column];
+    if (double(std::ranges::count_if(flags, of)) <= std::max(exceptions, kMany * n)) return;
     const auto& [column, count] = *std::ranges::max_element(of_column, {}, [](const auto& v) { return v.second; });
     if (count > screening.many) screening.widespread = column, screening.many = count;
+    std::erase_if(flags, [&](const RowFlag& f) { return of(f) && f.distance < nearer; });
   };
-  if (double(std::ranges::count_if(flags, single)) > std::max(3.0, kMany * n)) {
-    std::map<std::string, int> slipping;
-    for (const RowFlag& f : flags)
-      if (single(f)) ++slipping[f.column];
-    widespread(slipping);
-    const double plain = 10 * bulk * quantile(complement(boost::math::chi_squared(model.width()), kPerhaps));
-    std::erase_if(flags, [&](const RowFlag& f) { return single(f) && f.distance < plain; });
-  }
+  // Few rows of a set slip. Where more seem to, any row far off finds some slip that fits: only the plainest stay.
+  thin(3, 10 * bulk * quantile(complement(boost::math::chi_squared(model.width()), kPerhaps)), single);
   // Exceptions are few: where many shots are far off for no reason, the rule is wrong, not the rows.
-  std::map<std::string, int> unreasoned;
-  int count = 0;
-  const auto unexplained = [&](const RowFlag& f) { return !f.slip && f.shot >= 0 && !known.contains(f.shot); };
-  for (const RowFlag& f : flags)
-    if (unexplained(f)) ++count, ++unreasoned[f.column];
-  if (count > std::max(2.0, kMany * n)) {
-    std::erase_if(flags, unexplained);
-    widespread(unreasoned);
-  }
+  thin(2, kInfinity, [&](const RowFlag& f) { return !f.slip && f.shot >= 0 && !known.contains(f.shot); });
   for (RowFlag& f : flags)
     if (single(f) && !f.doubtful.empty()) f.reason = f.doubtful;
   std::ranges::stable_sort(flags, {}, &RowFlag::row);

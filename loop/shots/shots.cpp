@@ -116,7 +116,7 @@ double recorded_elsewhere(std::vector<double>& si, const Unit& unit, double step
         double& x = values[i];
         if (!std::isfinite(x)) continue;
         const double whole = std::round(x / coarse);
-        const double rounding = std::max(0.51 * last[i] * unit.si, 1e-12 * std::abs(x));
+        const double rounding = std::max(0.51 * last[i] * unit.si, kLastBits * std::abs(x));
         ++n;
         if (std::abs(x - whole * coarse) > rounding) ++off;
         else x = whole / power * other.si;
@@ -230,7 +230,7 @@ std::vector<std::size_t> different_rows(const post::Sheet& sheet) {
       if (result[c]) of_results += count;
       if (used[c]) shot.push_back(cell);
     }
-    const bool tells = digits >= kDigits || (numbered < std::ssize(sheet.names) && !row[std::size_t(numbered)].empty());
+    const bool tells = digits >= kDigits || (numbered < std::ssize(sheet.names) && !row[numbered].empty());
     const bool again = !seen.insert(std::move(row)).second && tells,
                twice = !struck.insert(std::move(shot)).second && of_results >= kDigits;
     if (!again && !twice) kept.push_back(i);
@@ -242,7 +242,7 @@ std::vector<std::size_t> different_rows(const post::Sheet& sheet) {
 void in_order_of_shots(const post::Sheet& sheet, std::vector<std::size_t>& rows) {
   const auto numbered = std::ranges::find(sheet.names, "shot");
   if (numbered == sheet.names.end()) return;
-  const auto& cells = sheet.columns[std::size_t(numbered - sheet.names.begin())];
+  const auto& cells = sheet.columns[numbered - sheet.names.begin()];
   std::map<double, std::size_t> by_number;
   for (const std::size_t i : rows)
     if (const auto x = post::number(cells[i]); !x || !std::isfinite(*x) || !by_number.emplace(*x, i).second) return;
@@ -315,7 +315,7 @@ Shots read_shots(const post::Sheet& all, bool flights) {
   const auto shot = std::ranges::find(sheet.names, "shot");
   shots.has_shot_column = shot != sheet.names.end();
   for (std::size_t i = 0; i < sheet.rows(); ++i) {
-    const std::string cell = shots.has_shot_column ? sheet.columns[std::size_t(shot - sheet.names.begin())][i] : "";
+    const std::string cell = shots.has_shot_column ? sheet.columns[shot - sheet.names.begin()][i] : "";
     shots.id.push_back(cell.empty() ? std::to_string(kept[i] + 1) : cell);
   }
   in_order_of_quantities(shots.columns);
@@ -327,7 +327,7 @@ void join(Shots& shots, const post::Sheet& sheet, const std::string& by) {
   if (!key) throw DataError(fmt::format("{}:1: no column '{}' to join by", shots.file, by));
   const auto at = std::ranges::find(sheet.names, by);
   if (at == sheet.names.end()) throw DataError(fmt::format("{}:1: no column '{}' to join by", sheet.file, by));
-  const auto& keys = sheet.columns[std::size_t(at - sheet.names.begin())];
+  const auto& keys = sheet.columns[at - sheet.names.begin()];
   std::map<std::string, std::size_t> row_of;
   for (std::size_t i = 0; i < keys.size(); ++i)
     if (!row_of.emplace(keys[i], i).second)
@@ -351,7 +351,7 @@ void join(Shots& shots, const post::Sheet& sheet, const std::string& by) {
     }
     for (std::size_t i = 0; i < shots.rows(); ++i)
       if (std::isnan(target->value[i]) && group.of_row[i] >= 0)
-        target->value[i] = source.value[row_of.at(group.name[std::size_t(group.of_row[i])])];
+        target->value[i] = source.value[row_of.at(group.name[group.of_row[i]])];
   }
   in_order_of_quantities(shots.columns);
 }
@@ -383,11 +383,11 @@ bool monotone(const Shots& shots, const Column& reading) {
   const Column* shot = shots.find("shot");
   const bool numbered = shots.has_shot_column && shot && shot->numeric;
   const std::vector<int> by_order =
-      rising_order(shots.rows(), [&](int i) { return numbered ? shot->value[std::size_t(i)] : double(i); });
+      rising_order(shots.rows(), [&](int i) { return numbered ? shot->value[i] : double(i); });
   std::size_t values = 0, rises = 0, falls = 0;
   double before = kNaN;
   for (const int i : by_order) {
-    const double x = reading.value[std::size_t(i)];
+    const double x = reading.value[i];
     if (!std::isfinite(x)) continue;
     ++values;
     rises += x > before;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "golf/quantities.hpp"
@@ -34,7 +35,8 @@ struct Shots {
   std::size_t repeated = 0;  ///< rows of the file that are copies of an earlier one: they count once
 
   std::size_t rows() const { return id.size(); }
-  const Column* find(std::string_view name) const;       ///< by header
+  const Column* find(std::string_view name) const;  ///< by header
+  Column* find(std::string_view name) { return const_cast<Column*>(std::as_const(*this).find(name)); }
   const Column* find_stem(std::string_view stem) const;  ///< by name without unit
 };
 

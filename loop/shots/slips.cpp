@@ -7,6 +7,8 @@
 #include <cmath>
 #include <map>
 
+#include "loop/result.hpp"
+
 namespace hosel::loop {
 namespace {
 

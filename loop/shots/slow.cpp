@@ -67,7 +67,7 @@ std::string errors(const Surrogate& surrogate, const std::vector<Shot>& shots, c
     for (const Shot& s : shots) {
       const Launch l = surrogate.launch(s);
       Vec6 slope;
-      for (int k = 0; k < 6; ++k) {
+      for (Eigen::Index k = 0; k < slope.size(); ++k) {
         const double h = 1e-4;
         slope[k] = (get(Surrogate::shifted(l, s, h * Vec6::Unit(k)), *output) - get(l, *output)) / h / c.si;
       }
@@ -87,7 +87,7 @@ std::function<void(int)> told(const ShotCase& c, const char* what, std::size_t o
 bool same_question(const Shot& a, const Shot& b) {
   return std::ranges::all_of(features(), [&](const Feature& f) {
     const double x = f.get(a), y = f.get(b);
-    return x == y || std::abs(x - y) < 1e-12;
+    return x == y || std::abs(x - y) < kLastBits;
   });
 }
 
@@ -111,7 +111,7 @@ Doubt in_doubt(const ShotProblem& problem, const Fit& fit) {
   if (fit.size() > 0) {
     Eigen::MatrixXd J = problem.model().jacobian(some, fit.model, fit.p);
     const std::vector<const Parameter*> parameters = fit.model.parameters();
-    for (Eigen::Index k = 0; k < J.cols(); ++k) J.col(k) *= way(*parameters[std::size_t(k)]);
+    for (Eigen::Index k = 0; k < J.cols(); ++k) J.col(k) *= way(*parameters[k]);
     covariance += J * J.transpose();
   }
   const auto deviance = [&] {
@@ -212,7 +212,7 @@ LoopResult run_slow(const ShotCase& c, Learnt& learnt) {
 }
 
 void ask_further(const ShotProblem& problem, const Rules& rules, LoopResult& result) {
-  constexpr std::size_t likeliest = 4, rivals = 6, few = 8;
+  constexpr std::size_t likeliest = 4, few = 8;
   const Selection& found = result.selection;
   const auto ask = [&](const Fit& fit, std::size_t most, std::vector<Shot>& into) {
     for (const int i : evenly(problem.training(), most))
@@ -244,7 +244,7 @@ void ask_further(const ShotProblem& problem, const Rules& rules, LoopResult& res
     if (doubt.matters() && r.rank < best + rules.tie) possible.push_back(std::move(r));
   }
   std::ranges::sort(possible, {}, &Rival::rank);
-  for (std::size_t k = 0; k < std::min(rivals, possible.size()); ++k) ask(possible[k].fit, few, result.decisive);
+  for (std::size_t k = 0; k < std::min(kLikeliest, possible.size()); ++k) ask(possible[k].fit, few, result.decisive);
   if (result.decisive.size() < few) ask(found.chosen, few, result.checks);
 }
 

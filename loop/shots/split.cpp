@@ -66,7 +66,7 @@ Rows split_rows(const ShotCase& c, const ShotModel& model, const std::vector<int
     int count = int(g.name.size());
     std::map<int, std::vector<std::size_t>> members;  // a shot without a name is a cluster of its own
     for (std::size_t i = 0; i < usable.size(); ++i) {
-      const int name = g.of_row[std::size_t(row_of[std::size_t(usable[i])])];
+      const int name = g.of_row[row_of[usable[i]]];
       members[name < 0 ? count++ : name].push_back(i);
     }
     const auto most = std::ranges::max_element(oblique) - oblique.begin();

@@ -37,8 +37,7 @@ struct Reaches {
           Shot there = shot;
           f.before(p, there);
           p[k] = 0;
-          for (int i = 0; i < kInputs; ++i)
-            inputs[std::size_t(i)].widen(get(there.blow, Input(i)) - get(shot.blow, Input(i)));
+          for (int i = 0; i < kInputs; ++i) inputs[i].widen(get(there.blow, Input(i)) - get(shot.blow, Input(i)));
           for (std::size_t i = 0; i < features.size(); ++i)
             if (const Feature& q = loop::features()[i]; q.set) features[i].widen(q.get(there) - q.get(shot));
         }
@@ -69,14 +68,14 @@ std::vector<Shot> spread(const std::vector<Shot>& recorded, const std::vector<Pa
   for (int k = 0; k < kInputs; ++k) {
     const auto [low, high] = range_of(recorded, [&](const Shot& s) { return get(s.blow, Input(k)); });
     const double spare = 0.02 * (high - low);
-    const Reach own = Input(k) == Input::head_mass ? Reach{} : reaches.inputs[std::size_t(k)];
+    const Reach own = Input(k) == Input::head_mass ? Reach{} : reaches.inputs[k];
     inputs.push_back(solvers::latin_column(low - spare + 0.5 * own.low, high + spare + 0.5 * own.high, n, random));
   }
   const Shot& model = recorded.front();
   std::vector<Shot> out;
   for (std::size_t i = 0; i < n; ++i) {
     Shot plain = model;
-    for (int k = 0; k < kInputs; ++k) set(plain.blow, Input(k), inputs[std::size_t(k)][i]);
+    for (int k = 0; k < kInputs; ++k) set(plain.blow, Input(k), inputs[k][i]);
     for (int draws = 0;; ++draws) {
       if (draws == 100) throw std::invalid_argument("no blow near the recorded ones can happen");
       Shot s = plain;

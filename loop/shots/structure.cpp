@@ -40,7 +40,7 @@ bool standardise(Eigen::VectorXd& x, const std::vector<int>& rows) {
     square += x[i] * x[i];
     largest = std::max(largest, std::abs(x[i]));
   }
-  if (!(square > 0) || largest < 1e-12 * std::abs(sum / count)) return false;
+  if (!(square > 0) || largest < kLastBits * std::abs(sum / count)) return false;
   x /= std::sqrt(square / double(rows.size()));
   return true;
 }
@@ -70,7 +70,7 @@ void add_responses(const ShotModel& model, const std::vector<int>& rows, const E
   std::vector<double> out(static_cast<std::size_t>(m));
   for (int i = 0; i < n; ++i) {
     const bool good = model.predict(i, Model{}, nullptr, out.data());
-    for (int c = 0; c < m; ++c) y(i, c) = good ? out[std::size_t(c)] : kNaN;
+    for (int c = 0; c < m; ++c) y(i, c) = good ? out[c] : kNaN;
   }
   const std::vector<int> by_order = rising_order(std::size_t(n), [&](int i) { return order[i]; });
   for (int c = 0; c < m; ++c) {
@@ -90,7 +90,7 @@ void add_responses(const ShotModel& model, const std::vector<int>& rows, const E
       if (beside(x, {&line}, rows)) all.push_back({name, "response", std::move(detail), false, x, c});
     };
     for (const double share : {0.3, 0.5, 0.7}) {
-      const double half = 0.5 * (at(0.5 + share / 2) - at(0.5 - share / 2)), centre = at(0.5);
+      const double half = (at((1 + share) / 2) - at((1 - share) / 2)) / 2, centre = at(0.5);
       add(fmt::format("dead band about {:.4g}", centre),
           [&](double v) { return std::abs(v - centre) < half ? v - centre : 0.0; });
     }
@@ -98,8 +98,7 @@ void add_responses(const ShotModel& model, const std::vector<int>& rows, const E
       add(fmt::format("kink at {:.4g}", at(q)),
           [&](double v) { return q < 0.5 ? std::min(0.0, v - at(q)) : std::max(0.0, v - at(q)); });
     Eigen::VectorXd lag = Eigen::VectorXd::Zero(n);
-    for (int k = 1; k < n; ++k)
-      lag[by_order[std::size_t(k)]] = y(by_order[std::size_t(k) - 1], c) - y(by_order[std::size_t(k)], c);
+    for (int k = 1; k < n; ++k) lag[by_order[k]] = y(by_order[k - 1], c) - y(by_order[k], c);
     if (standardise(lag, rows)) all.push_back({"shot", "lag", "the reading of the shot before", true, lag, c});
   }
 }
@@ -114,8 +113,7 @@ void add_neighbours(const std::vector<Line>& lines, const std::vector<int>& rows
     if (l.foreign || !standardise(own, rows)) continue;
     for (const int away : {-1, 1}) {
       Eigen::VectorXd x(n);
-      for (Eigen::Index k = 0; k < n; ++k)
-        x[by_order[std::size_t(k)]] = own[by_order[std::size_t(std::clamp<Eigen::Index>(k + away, 0, n - 1))]];
+      for (Eigen::Index k = 0; k < n; ++k) x[by_order[k]] = own[by_order[std::clamp<Eigen::Index>(k + away, 0, n - 1)]];
       if (beside(x, {&own}, rows))
         all.push_back({l.name, "lag", fmt::format("value on the shot {}", away < 0 ? "before" : "after"), true, x});
     }
@@ -128,7 +126,7 @@ void add_turns(const Shots& shots, const std::vector<int>& row_of, const std::ve
   constexpr long longest = 8;
   const Column* shot = shots.find("shot");
   if (!shots.has_shot_column || !shot || !shot->numeric) return;
-  const auto number = [&](Eigen::Index i) { return shot->value[std::size_t(row_of[std::size_t(i)])]; };
+  const auto number = [&](Eigen::Index i) { return shot->value[row_of[i]]; };
   const auto n = Eigen::Index(row_of.size());
   for (Eigen::Index i = 0; i < n; ++i)
     if (!std::isfinite(number(i)) || number(i) != std::round(number(i)) || std::abs(number(i)) > 1e9) return;
@@ -157,7 +155,7 @@ std::vector<Line> columns_of(const Shots& shots, const std::vector<int>& row_of,
     if (c.role == Role::output || !c.numeric || c.role == Role::bookkeeping) continue;
     Eigen::VectorXd x(n);
     for (int i = 0; i < n; ++i) {
-      x[i] = c.value[std::size_t(row_of[std::size_t(i)])];
+      x[i] = c.value[row_of[i]];
       // What the fit sees of an input (filled, shrunk towards its mean) is what the residual depends on.
       if (c.role == Role::input) x[i] = get(model.trial(i).blow, *input_of(c.stem));
     }
@@ -226,7 +224,7 @@ std::vector<Regressor> regressors(const Shots& shots, const std::vector<int>& ro
     if (g.name.size() < 2 || g.name.size() > 40) continue;
     for (std::size_t k = 0; k < g.name.size(); ++k) {
       Eigen::VectorXd x(n);
-      for (Eigen::Index i = 0; i < n; ++i) x[i] = g.of_row[std::size_t(row_of[std::size_t(i)])] == int(k);
+      for (Eigen::Index i = 0; i < n; ++i) x[i] = g.of_row[row_of[i]] == int(k);
       double members = 0;
       for (const int i : rows) members += x[i];
       if (members < 2 || members > double(rows.size()) - 1) continue;
@@ -236,11 +234,12 @@ std::vector<Regressor> regressors(const Shots& shots, const std::vector<int>& ro
   }
 
   if (rows.size() >= kFewestRows) {
-    for (int k = 1; k < 12; ++k) {
+    for (int k = 1; k < kPartsOfSession; ++k) {
       Eigen::VectorXd x(n);
-      for (Eigen::Index i = 0; i < n; ++i) x[i] = order[i] > k / 12.0;
+      for (Eigen::Index i = 0; i < n; ++i) x[i] = order[i] > double(k) / kPartsOfSession;
       if (standardise(x, rows))
-        all.push_back({"shot", "step", fmt::format("at {:.0f} % of the session", 100 * k / 12.0), true, x});
+        all.push_back(
+            {"shot", "step", fmt::format("at {:.0f} % of the session", 100.0 * k / kPartsOfSession), true, x});
     }
     const int fastest = std::clamp(int(rows.size()) / 4, 2, 16);
     // Half periods too: the slow ones need not close over the session.
@@ -299,7 +298,7 @@ StructureMap structure(const Problem& problem, const Whitened& view, const Fit& 
     for (int c = 0; c < m; ++c) {
       if (r.channel >= 0 && r.channel != c) continue;
       Eigen::VectorXd value(n);
-      for (int i = 0; i < n; ++i) value[i] = r.value[rows[std::size_t(i)]];
+      for (int i = 0; i < n; ++i) value[i] = r.value[rows[i]];
       a = view.column(c, value);
       add(c, &r);
     }
@@ -310,12 +309,12 @@ StructureMap structure(const Problem& problem, const Whitened& view, const Fit& 
   const std::size_t plain = scores.size();
 
   // Neighbours alike: products of standardised residuals of successive shots, in session order.
-  const std::vector<int> by_order = rising_order(rows.size(), [&](int i) { return view.order[std::size_t(i)]; });
+  const std::vector<int> by_order = rising_order(rows.size(), [&](int i) { return view.order[i]; });
   for (int c = 0; c < m && n >= kFewestRows; ++c) {
     Eigen::VectorXd u = Eigen::VectorXd::Zero(n);
     double square = 0;
     for (int k = 0; k + 1 < n; ++k) {
-      const int i = by_order[std::size_t(k)], j = by_order[std::size_t(k) + 1];
+      const int i = by_order[k], j = by_order[k + 1];
       const double x = weights[i] * noise[std::ptrdiff_t(i) * m + c], y = weights[j] * noise[std::ptrdiff_t(j) * m + c];
       u[k] = x * y;
       square += x * x;
@@ -347,8 +346,7 @@ StructureMap structure(const Problem& problem, const Whitened& view, const Fit& 
         if (i % 64 == 0) bits = random();
         S(b, i) = (bits >> (i % 64) & 1U) ? 1.0F : -1.0F;
       }
-      for (int k = 0; k < n; ++k)
-        P(b, k) = k + 1 < n ? S(b, by_order[std::size_t(k)]) * S(b, by_order[std::size_t(k) + 1]) : 1.0F;
+      for (int k = 0; k < n; ++k) P(b, k) = k + 1 < n ? S(b, by_order[k]) * S(b, by_order[k + 1]) : 1.0F;
     }
     const Eigen::MatrixXf A = S * U, B = P * V;
     for (int b = 0; b < batch && done + b < rules.flips; ++b)
@@ -421,8 +419,8 @@ std::vector<Location> plainest_places(const Problem& problem, const Selection& s
   // What the map shows nearly as plainly may be the driver: few shots do not part correlated columns.
   for (const StructureMap* map : {&s.after, &s.before})
     for (const Finding& f : map->findings)
-      if (f.channel >= 0 && told.size() < 4 && std::abs(f.signal) > 0.85 * std::abs(map->findings.front().signal) &&
-          f.p_adjusted < kTold &&
+      if (f.channel >= 0 && told.size() < kMostTold &&
+          std::abs(f.signal) > 0.85 * std::abs(map->findings.front().signal) && f.p_adjusted < kTold &&
           std::ranges::none_of(map->findings, [&](const Finding& group) { return names_it(f, group); }))
         add(&f);
   return told;

@@ -55,7 +55,7 @@ double Surrogate::surprise(const std::vector<Shot>& shots, const std::vector<std
     if (!found[i]) continue;
     const Eigen::VectorXd x = coordinates(shots[i]);
     const Vec6 miss = *found[i] - process_(x), told = process_.error(x).diagonal();
-    for (int k = 0; k < 6; ++k)
+    for (Eigen::Index k = 0; k < told.size(); ++k)
       if (told[k] > 0) {
         sum += miss[k] * miss[k] / told[k];
         ++readings;
@@ -70,7 +70,7 @@ void Surrogate::fit() {
   const auto all = features();
   Eigen::MatrixXd value(n, Eigen::Index(all.size()));
   for (Eigen::Index i = 0; i < n; ++i)
-    for (std::size_t k = 0; k < all.size(); ++k) value(i, Eigen::Index(k)) = all[k].get(shots_[std::size_t(i)]);
+    for (std::size_t k = 0; k < all.size(); ++k) value(i, Eigen::Index(k)) = all[k].get(shots_[i]);
   const std::vector<std::size_t> before = std::exchange(features_, {});
   for (std::size_t k = 0; k < all.size(); ++k) {
     const auto column = value.col(Eigen::Index(k));
@@ -82,12 +82,12 @@ void Surrogate::fit() {
   half_.resize(d);
   Eigen::MatrixXd x(n, d), y(n, 6);
   for (Eigen::Index k = 0; k < d; ++k) {
-    const auto column = value.col(Eigen::Index(features_[std::size_t(k)]));
+    const auto column = value.col(Eigen::Index(features_[k]));
     middle_[k] = 0.5 * (column.minCoeff() + column.maxCoeff());
     half_[k] = 0.5 * (column.maxCoeff() - column.minCoeff());
     x.col(k) = (column.array() - middle_[k]) / half_[k];
   }
-  for (Eigen::Index i = 0; i < n; ++i) y.row(i) = beyond_[std::size_t(i)].transpose();
+  for (Eigen::Index i = 0; i < n; ++i) y.row(i) = beyond_[i].transpose();
   solvers::Kriging::Correlation from;
   if (features_ == before) from = process_.correlation();
   process_ = {x, y, std::move(from)};
@@ -96,7 +96,7 @@ void Surrogate::fit() {
 Eigen::VectorXd Surrogate::coordinates(const Shot& shot) const {
   Eigen::VectorXd x(Eigen::Index(features_.size()));
   for (Eigen::Index k = 0; k < x.size(); ++k)
-    x[k] = std::clamp((features()[features_[std::size_t(k)]].get(shot) - middle_[k]) / half_[k], -1.0, 1.0);
+    x[k] = std::clamp((features()[features_[k]].get(shot) - middle_[k]) / half_[k], -1.0, 1.0);
   return x;
 }
 

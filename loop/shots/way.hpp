@@ -9,7 +9,7 @@
 
 namespace hosel::loop {
 
-inline constexpr double kNoMotion = 1e-9;  ///< norm of whitened derivatives: nothing moves
+inline constexpr double kNoMotion = kRoundOff;  ///< norm of whitened derivatives: nothing moves
 
 /// One way in which a shot's channels move together.
 struct Way {

@@ -18,6 +18,7 @@
 #include "golf/first_contact.hpp"
 #include "loop/effects/all.hpp"
 #include "loop/report.hpp"
+#include "loop/shots/columns.hpp"
 #include "loop/shots/inputs.hpp"
 #include "loop/shots/problem.hpp"
 #include "loop/shots/run.hpp"
