@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <iterator>
 #include <map>
 #include <set>
@@ -94,6 +95,9 @@ void Dictionary::read(const fs::path& file) {
     q.metric = unit.text("metric");
     const auto range = t.numbers("plausible", 2);
     q.low = range[0], q.high = range[1];
+    const double most = 2 * std::max(std::abs(q.low), std::abs(q.high));
+    const auto possible = t.numbers("possible", 2, Range::finite(), std::vector{-most, most});
+    q.least = possible[0], q.greatest = possible[1];
     if (t.flag("side", false))
       q.sides = q.name == "impact_toe"                                                            ? Sides::toe
                 : q.name == "impact_high" || q.name == "launch_angle" || q.name == "attack_angle" ? Sides::height

@@ -13,9 +13,10 @@ namespace hosel::app {
 
 struct MonitorQuantity {
   std::string name, imperial, metric;
-  double low = 0, high = 0;   ///< of a column's median [SI]
-  Sides sides = Sides::none;  ///< words that cells and headers may have
-  bool zero = true;           ///< 0 may be measured, else it stands for no reading
+  double low = 0, high = 0;        ///< of a column's median [SI]
+  double least = 0, greatest = 0;  ///< of a cell: beyond them no instrument has measured it [SI]
+  Sides sides = Sides::none;       ///< words that cells and headers may have
+  bool zero = true;                ///< 0 may be measured, else it stands for no reading
   struct Header {
     std::string words, unit;  ///< unit: that a header must have to be meant; empty: any
   };
@@ -51,7 +52,8 @@ class Dictionary {
   const MonitorQuantity* quantity(std::string_view name) const;
   std::vector<std::string> quantity_names() const;
   std::string bookkeeping_of(const std::string& header) const;  ///< the role of a header, "" where it has none
-  std::vector<std::string> roles() const;                       ///< club, shot, hand, ...
+  bool knows(const std::string& header) const { return quantity_of(header) || !bookkeeping_of(header).empty(); }
+  std::vector<std::string> roles() const;  ///< club, shot, hand, ...
   /// `7Iron`, `7-iron`, `Iron 7`, `7i`, `i7`, `Eisen 7` are one club, `DR` and `Driver` another. Words beside it are
   /// its brand's: `7I - Srixon ZX5`.
   const NominalClub* club(const std::string& name) const;

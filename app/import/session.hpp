@@ -2,12 +2,11 @@
 #pragma once
 
 #include <filesystem>
-#include <map>
-#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "app/import/by_hand.hpp"
 #include "app/import/dictionary.hpp"
 #include "app/import/import.hpp"
 #include "app/import/sheet.hpp"
@@ -24,22 +23,6 @@ struct Understood {
   /// Adds to the note.
   void remark(const std::string& text) { note += (note.empty() ? "" : ", ") + text; }
 };
-
-/// What --column says.
-struct ByHand {
-  std::map<std::string, std::string> quantity;  ///< header -> quantity with unit
-  std::set<std::string> turned;                 ///< headers whose numbers grow the other way
-
-  /// What is said of a column: by its whole header, else by its words where no other column's are said whole; null
-  /// where nothing is.
-  const std::string* of(const std::string& header, const Row& headers) const;
-};
-
-/// Reads --column and teaches the dictionary what it says.
-ByHand read_by_hand(const ImportOptions& options, Dictionary& dictionary);
-
-/// Every header that --column and --keep name must be that of a column in a file at least.
-void check_headers(const ImportOptions& options, const ByHand& by_hand, const std::vector<Sheet>& sheets);
 
 /// What one file says, or several together.
 struct Session {

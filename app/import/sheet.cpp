@@ -5,6 +5,7 @@
 #include <utf8.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <fstream>
 #include <iterator>
@@ -13,6 +14,7 @@
 #include <optional>
 #include <set>
 #include <sstream>
+#include <utility>
 
 #include "app/import/statistics.hpp"
 #include "app/reader.hpp"
@@ -23,7 +25,29 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The file as UTF-8 without a byte-order mark: UTF-8, UTF-16 with a mark, else Latin-1.
+/// Which byte order of UTF-16 a text without a mark is in: half of its Latin letters' bytes are zeros. Nothing where it
+/// is no such text.
+std::optional<bool> little_endian_by_zeros(const std::string& raw) {
+  std::array<std::size_t, 2> zeros{};
+  for (std::size_t i = 0; i < raw.size(); ++i) zeros[i % 2] += raw[i] == '\0';
+  if (zeros[0] > 8 * zeros[1]) return false;
+  if (zeros[1] > 8 * zeros[0]) return true;
+  return {};
+}
+
+/// Of files that are no text: what they are, and how to get one.
+std::string not_a_text(const std::string& raw) {
+  for (const auto& [begins, what] : {std::pair{"PK\x03\x04", "a workbook (.xlsx, .ods, .numbers) or another archive"},
+                                     {"\xD0\xCF\x11\xE0", "an old Excel workbook (.xls)"}})
+    if (raw.starts_with(begins))
+      return fmt::format(
+          "{}: open it in a spreadsheet program, choose the sheet with the shots, save that as CSV "
+          "('CSV UTF-8' in Excel), and import the CSV",
+          what);
+  return raw.starts_with("%PDF") ? "a PDF: export the session as CSV" : "not a text file";
+}
+
+/// The file as UTF-8 without a byte-order mark: UTF-8, UTF-16, else Latin-1.
 std::string read_utf8(const fs::path& file) {
   constexpr std::uintmax_t most = 64u << 20;
   std::error_code none;
@@ -37,19 +61,25 @@ std::string read_utf8(const fs::path& file) {
   std::ifstream in(file, std::ios::binary);
   std::string raw((std::istreambuf_iterator<char>(in)), {});
   const auto byte = [&](std::size_t i) { return unsigned(static_cast<unsigned char>(raw[i])); };
-  if (raw.size() >= 2 && ((byte(0) == 0xFF && byte(1) == 0xFE) || (byte(0) == 0xFE && byte(1) == 0xFF))) {
-    const bool little = byte(0) == 0xFF;
+  const auto utf16 = [&](bool little, std::size_t begin) {
     std::u16string units;
-    for (std::size_t i = 2; i + 1 < raw.size(); i += 2)
+    for (std::size_t i = begin; i + 1 < raw.size(); i += 2)
       units += char16_t(little ? byte(i) | byte(i + 1) << 8 : byte(i) << 8 | byte(i + 1));
-    try {
-      return utf8::utf16to8(units);
+    return utf8::utf16to8(units);
+  };
+  if (raw.starts_with("\xFF\xFE") || raw.starts_with("\xFE\xFF")) try {
+      return utf16(byte(0) == 0xFF, 2);
     } catch (const utf8::exception&) {
       throw InputError(fmt::format("{}: neither UTF-16, as its first bytes say, nor another text", file.string()));
     }
-  }
   if (raw.starts_with("\xEF\xBB\xBF")) raw.erase(0, 3);
-  if (raw.find('\0') != std::string::npos) throw InputError(fmt::format("{}: not a text file", file.string()));
+  if (const bool document = raw.starts_with("PK\x03\x04") || raw.starts_with("%PDF");
+      document || raw.find('\0') != std::string::npos) {
+    if (const auto little = document ? std::nullopt : little_endian_by_zeros(raw)) try {
+        if (std::string text = utf16(*little, 0); text.find('\0') == std::string::npos) return text;
+      } catch (const utf8::exception&) {}  // no text in either order
+    throw InputError(fmt::format("{}: {}", file.string(), not_a_text(raw)));
+  }
   if (utf8::is_valid(raw)) return raw;
   std::string out;
   for (std::size_t i = 0; i < raw.size(); ++i) utf8::append(char32_t(byte(i)), out);
@@ -162,7 +192,9 @@ void find_lists(const Dictionary& d, const nlohmann::json& node, const std::stri
     if (value.is_primitive() && !value.is_null()) {
       const std::string role = d.bookkeeping_of(known_name(d, key));
       const std::string text = cell_of(value);
-      if (!role.empty() && role != "shot" && role != "carry" && !plain_number(text)) said[key] = text;
+      // A hand that is a number is asked about, like that of a column.
+      if (!role.empty() && role != "shot" && role != "carry" && (role == "hand" || !plain_number(text)))
+        said[key] = text;
     }
   for (const auto& [key, value] : node.items())
     if (value.is_structured()) find_lists(d, value, path + "/" + key, said, out);
@@ -244,14 +276,10 @@ Sheet read_json(const std::string& text, const fs::path& file, const Dictionary&
   return sheet;
 }
 
-bool is_known(const Dictionary& d, const std::string& name) {
-  return d.quantity_of(name) || !d.bookkeeping_of(name).empty();
-}
-
 /// Different ones: a row of groups says `Ball` above each of the ball's columns.
 std::size_t known_cells(const Dictionary& d, const Row& row) {
   return std::size_t(std::ranges::count_if(std::set<std::string>(row.begin(), row.end()),
-                                           [&](const std::string& c) { return is_known(d, c); }));
+                                           [&](const std::string& c) { return d.knows(c); }));
 }
 
 /// Groups in the row above a header, each over its own columns and those right of it without one: `Speed` below `Ball`
@@ -264,11 +292,11 @@ void name_by_groups(Row& names, const Row& groups, const Dictionary& d) {
     if (!groups[c].empty()) group = groups[c];
     const std::string both = group + " " + alone[c];
     if (plain(alone[c]).empty()) {
-      if (!groups[c].empty() && is_known(d, both)) names[c] = trimmed(both);
+      if (!groups[c].empty() && d.knows(both)) names[c] = trimmed(both);
       continue;
     }
-    const bool clear = is_known(d, alone[c]) && std::ranges::count(alone, alone[c]) == 1;
-    if (!clear && is_known(d, both)) names[c] = both;
+    const bool clear = d.knows(alone[c]) && std::ranges::count(alone, alone[c]) == 1;
+    if (!clear && d.knows(both)) names[c] = both;
   }
 }
 
@@ -587,7 +615,7 @@ void take_shots(Sheet& sheet, const Row& header, const Dictionary& d, const fs::
     // A name that is known only with a unit has it here: `LAUNCH` above `deg`.
     for (std::size_t c = 0; c < width; ++c)
       if (const std::string both = sheet.names[c] + " [" + sheet.units[c] + "]";
-          !unit_of(sheet.units[c]).empty() && !is_known(d, sheet.names[c]) && d.quantity_of(both))
+          !unit_of(sheet.units[c]).empty() && !d.knows(sheet.names[c]) && d.quantity_of(both))
         sheet.names[c] = both;
   }
   if (!column && std::ranges::any_of(clubs, [](const std::string& c) { return !c.empty(); })) {
@@ -598,6 +626,9 @@ void take_shots(Sheet& sheet, const Row& header, const Dictionary& d, const fs::
   sheet.rows = std::move(shots);
 }
 
+/// Rows that may be the header: the first, and, where none of these is one, as many as a long preamble may have.
+constexpr std::size_t kFirstRows = 30, kMostBefore = 1000;
+
 Sheet read_table(std::string text, const Dictionary& d, const fs::path& file) {
   Sheet best;
   Row header;
@@ -605,9 +636,11 @@ Sheet read_table(std::string text, const Dictionary& d, const fs::path& file) {
   if (text.starts_with("sep=") || text.starts_with("SEP=")) text.erase(0, text.find('\n') + 1);
   for (const char delimiter : {',', ';', '\t', '|'}) {
     const std::vector<Row> rows = split(text, delimiter);
-    for (std::size_t h = 0; h < std::min<std::size_t>(rows.size(), 30); ++h) {
+    for (std::size_t h = 0; h < std::min(rows.size(), kMostBefore); ++h) {
       Row names = rows[h];
       const bool numbers = std::ranges::any_of(names, [](const std::string& c) { return plain_number(c).has_value(); });
+      if (h >= kFirstRows && is_header(best.names, d)) break;
+      if (h >= kFirstRows && (numbers || names.size() < 3)) continue;  // cells of a shot, or a line of text
       if (h > 0 && !numbers && !is_row_of_units(names)) name_by_groups(names, rows[h - 1], d);
       const std::size_t known = known_cells(d, names);
       if (known <= most) continue;
@@ -626,9 +659,9 @@ Sheet read_table(std::string text, const Dictionary& d, const fs::path& file) {
   if (most < 2) {
     list_names(text, d);
     throw InputError(
-        fmt::format("{}: no row of the first 30 looks like the header of shots (two known names at least); "
+        fmt::format("{}: no row of the first {} looks like the header of shots (two known names at least); "
                     "--dictionary FILE or --column 'header=quantity_unit' help",
-                    file.string()));
+                    file.string(), kMostBefore));
   }
   while (!best.names.empty() && best.names.back().empty()) best.names.pop_back();
   check_size(file, best.names.size(), best.rows.size());

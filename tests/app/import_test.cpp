@@ -835,8 +835,8 @@ TEST(Import, AFlaggedShotCountsInNoMean) {
   std::string text =
       "Club,Ball Speed (mph),Club Speed (mph),Launch Angle,Launch Direction,Spin Rate,Spin Axis,Dynamic Loft\n";
   for (int i = 0; i < 24; ++i)
-    text += fmt::format("7i,{},{},{},{},{},{},{}\n", i == 9 ? 1140 : 114 + i % 5, 82 + 0.7 * (i % 5),
-                        16 + 0.3 * (i % 4), i % 3 - 1, 6400 + 40 * (i % 7), i % 4 - 1, 22 + 0.4 * (i % 4));
+    text += fmt::format("7i,{},{},{},{},{},{},{}\n", i == 9 ? 230 : 114 + i % 5, 82 + 0.7 * (i % 5), 16 + 0.3 * (i % 4),
+                        i % 3 - 1, 6400 + 40 * (i % 7), i % 4 - 1, 22 + 0.4 * (i % 4));
   ASSERT_EQ(import_text(dir, text).status, 0);
   const auto o = command("run '" + (dir / "case").string() + "' --out '" + (dir / "out").string() + "'");
   ASSERT_EQ(o.status, 0) << o.text;
@@ -1269,6 +1269,125 @@ TEST(Import, TheClubsSpinIsNamedAsTheFileHasIt) {
   const auto o = command("run '" + (dir / "case").string() + "' --out '" + (dir / "out").string() + "'");
   ASSERT_EQ(o.status, 0) << o.text;
   EXPECT_NE(o.text.find("backspin [rpm]  "), std::string::npos) << o.text;
+}
+
+constexpr const char* kShots =
+    "Club,Ball Speed (mph),Club Speed (mph),Launch Angle,Launch Direction,Spin Rate,Dynamic Loft\n"
+    "7i,115,82,16,1.5,6400,22\n7i,117,83,17,-1,6500,23\n7i,116,82,16,0,6450,22\n";
+
+/// A text of UTF-16 is one with and without a mark; zeros elsewhere are no text.
+TEST(Import, Utf16WithoutAMark) {
+  const fs::path dir = test::fresh_directory("import_utf16");
+  for (const bool little : {true, false})
+    for (const bool mark : {true, false}) {
+      fs::remove_all(dir / "case");
+      std::string bytes = !mark ? "" : little ? "\xFF\xFE" : "\xFE\xFF";
+      for (const char c : std::string(kShots)) (bytes += little ? c : '\0') += little ? '\0' : c;
+      const auto o = import_text(dir, bytes);
+      ASSERT_EQ(o.status, 0) << little << mark << o.text;
+      EXPECT_EQ(imported_shots(dir).find("spin_rate_rpm")->native(1), 6500) << o.text;
+    }
+  fs::remove_all(dir / "case");
+  test::expect_refused(import_text(dir, std::string("7i\0,1\0\0\0,82\0\0", 12)), "not a text file");
+  test::expect_refused(import_text(dir, std::string("\1\0\0\0\2\0\0\0\3\0\0\0", 12)), "not a text file");
+}
+
+/// A workbook is named as one, and how its shots become a file that is read.
+TEST(Import, AWorkbookIsRefusedWithTheWayToACsv) {
+  const fs::path dir = test::fresh_directory("import_workbook");
+  for (const char* begins : {"PK\x03\x04", "\xD0\xCF\x11\xE0"}) {
+    const auto o = import_text(dir, begins + std::string("\0\0\x08\0", 4));
+    test::expect_refused(o, "save that as CSV");
+    EXPECT_NE(o.text.find("workbook"), std::string::npos) << o.text;
+  }
+  test::expect_refused(import_text(dir, std::string("%PDF-1.4\n")), "a PDF: export the session as CSV");
+}
+
+TEST(Import, AHeadOfManyLinesIsPassedOver) {
+  const fs::path dir = test::fresh_directory("import_long_head");
+  std::string head;
+  for (int i = 0; i < 400; ++i) head += i % 2 ? fmt::format("Note {},of,a line\n", i) : fmt::format("note {}\n", i);
+  const auto o = import_text(dir, "Player,Jo,Date,12.05.2024\n" + head + kShots);
+  ASSERT_EQ(o.status, 0) << o.text;
+  EXPECT_EQ(imported_shots(dir).rows(), 3u) << o.text;
+  EXPECT_NE(o.text.find("401 lines before the header"), std::string::npos) << o.text;
+}
+
+/// What a line above the header, or a document above its shots, says of the hand: a value that names none is refused.
+TEST(Import, AHandAboveTheHeaderIsUnderstoodOrRefused) {
+  const fs::path dir = test::fresh_directory("import_hand_above");
+  const auto azimuth = [&](const std::string& text, const std::string& options = "") {
+    fs::remove_all(dir / "case");
+    const auto o = import_text(dir, text, options);
+    EXPECT_EQ(o.status, 0) << text << o.text;
+    return o.status == 0 ? imported_shots(dir).find("azimuth_deg")->native(0) : 0;
+  };
+  for (const char* left : {"Left handed;1", "Left-handed: yes", "Right handed,no", "Righty: 0", "Lefty;true"})
+    EXPECT_NEAR(azimuth(left + std::string("\n") + kShots), -1.5, 1e-9) << left;
+  for (const char* right : {"Left handed;0", "Right handed: 1", "Lefty,no", "Handedness;-", "Player,Hand,Score"})
+    EXPECT_NEAR(azimuth(right + std::string("\n") + kShots), 1.5, 1e-9) << right;
+  for (const char* unclear : {"Handedness;1", "Handedness,1", "Player: Jo, Hand: X"}) {
+    fs::remove_all(dir / "case");
+    test::expect_refused(import_text(dir, unclear + std::string("\n") + kShots), "neither left nor right");
+    EXPECT_NEAR(azimuth(unclear + std::string("\n") + kShots, "--left-handed"), -1.5, 1e-9) << unclear;
+  }
+  const std::string shots =
+      R"("shots":[{"club":"7i","ballSpeed":115,"clubSpeed":82,"launchAngle":16,"launchDirection":1.5,"spinRate":6400},)"
+      R"({"club":"7i","ballSpeed":116,"clubSpeed":82,"launchAngle":16,"launchDirection":1.5,"spinRate":6400}]})";
+  EXPECT_NEAR(azimuth(R"({"player":"Jo","leftHanded":true,)" + shots, "--units imperial"), -1.5, 1e-9);
+  EXPECT_NEAR(azimuth(R"({"player":"Jo","leftHanded":1,)" + shots, "--units imperial"), -1.5, 1e-9);
+  fs::remove_all(dir / "case");
+  test::expect_refused(import_text(dir, R"({"player":"Jo","handedness":1,)" + shots, "--units imperial"),
+                       "column 'handedness', shot 1: '1' is neither left nor right");
+}
+
+/// `Direction` alone may be the ball's or the club's.
+TEST(Import, ADirectionIsTheBallsBesideTheClubsPath) {
+  const fs::path dir = test::fresh_directory("import_direction");
+  const auto o_of = [&](const std::string& more, const std::string& cells, const std::string& options = "") {
+    fs::remove_all(dir / "case");
+    return import_text(dir,
+                       "Club,Ball Speed (mph),Club Speed (mph),Launch Angle,Spin Rate,Direction" + more +
+                           "\n7i,115,82,16,6400,2.5 L" + cells + "\n7i,116,82,17,6500,1.0 R" + cells + "\n",
+                       options);
+  };
+  const auto taken = o_of(" (deg),Club Path", ",3");
+  ASSERT_EQ(taken.status, 0) << taken.text;
+  EXPECT_NEAR(imported_shots(dir).find("azimuth_deg")->native(0), -2.5, 1e-9) << taken.text;
+  EXPECT_NE(taken.text.find("the ball's, since the club's path has a column of its own"), std::string::npos);
+  const auto asked = o_of("", "");
+  ASSERT_EQ(asked.status, 0) << asked.text;
+  EXPECT_EQ(imported_shots(dir).find("azimuth_deg"), nullptr);
+  EXPECT_NE(asked.text.find("Direction (of the ball or of the club? --column 'Direction=azimuth_deg'"),
+            std::string::npos)
+      << asked.text;
+  const auto second = o_of(",Club Path,Launch Direction", ",3,1.25");
+  ASSERT_EQ(second.status, 0) << second.text;
+  EXPECT_EQ(second.text.find("of the ball or of the club?"), std::string::npos) << second.text;
+  EXPECT_NEAR(imported_shots(dir).find("azimuth_deg")->native(0), 1.25, 1e-9);
+  ASSERT_EQ(o_of("", "", "--column Direction=club_path_deg").status, 0);
+  EXPECT_NEAR(imported_shots(dir).find("club_path_deg")->native(1), 1, 1e-9);
+}
+
+/// A cell that no instrument can have measured is left out, and told with its shot, its value and what is allowed.
+TEST(Import, AnImpossibleCellIsLeftOut) {
+  const fs::path dir = test::fresh_directory("import_impossible");
+  const auto o = import_text(
+      dir, kShots + std::string("7i,115,82,16,1.5,-2.1e10,22\n7i,115,82,-123,1.5,-6400,22\n7i,415,82,16,75,300,22\n"));
+  ASSERT_EQ(o.status, 0) << o.text;
+  const loop::Shots shots = imported_shots(dir);
+  ASSERT_EQ(shots.rows(), 6u);
+  const auto is_left_out = [&](const char* column, std::size_t row) {
+    return std::isnan(shots.find(column)->native(row));
+  };
+  EXPECT_TRUE(is_left_out("spin_rate_rpm", 3) && is_left_out("spin_rate_rpm", 4));
+  EXPECT_TRUE(is_left_out("launch_angle_deg", 4) && is_left_out("ball_speed_mph", 5));
+  EXPECT_EQ(shots.find("spin_rate_rpm")->native(5), 300) << "a topped ball";
+  EXPECT_NEAR(shots.find("azimuth_deg")->native(5), 75, 1e-9) << "a shank";
+  for (const char* said :
+       {"left out: '-2.1e10' in shot 4, '-6400' in shot 5 (allowed: 0 to 30000 rpm)",
+        "left out: '-123' in shot 5 (allowed: -90 to 90 deg)", "left out: '415' in shot 6 (allowed: 0 to 300 mph)"})
+    EXPECT_NE(o.text.find(said), std::string::npos) << said << o.text;
 }
 
 }  // namespace hosel
