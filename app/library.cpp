@@ -443,6 +443,9 @@ std::optional<NamedContact> named_contact(Table root) {
     blow.delivery = read_delivery_of(root);
     loft = fmt::format("none of them saw this loft, a spin loft of {:.3g} deg (dynamic loft less attack angle)",
                        degrees(blow.delivery.dynamic_loft - blow.delivery.attack_angle));
+    if (blow.delivery.dynamic_loft == 0 && !root.table("delivery").has_quantity("dynamic_loft"))
+      loft =
+          "[delivery] has no dynamic_loft_deg to choose one by; a study that varies the loft needs one there as well";
     by_loft.face = face_name(root);
     if (const NamedContact* s = by_loft.at(blow)) return *s;
   }

@@ -238,7 +238,9 @@ void Output::say(std::string_view line) {
 }
 
 void Output::show(const post::TextTable& table, std::string_view heading) {
-  tell(table.text());
+  if (!quiet()) std::fputs((printable(folded(table, terminal_width())) + '\n').c_str(), stdout);
+  std::fflush(stdout);
+  log(table.text());
   if (heading.empty()) state_->page.answer(table);
   else state_->page.section(heading, table.html());
 }

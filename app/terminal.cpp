@@ -2,9 +2,11 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/ioctl.h>
 #include <unistd.h>
 #include <utf8.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -39,6 +41,87 @@ std::string one_line(std::string_view text) {
     return at;
   };
   return line.substr(0, boundary(most - end)) + " [...] " + line.substr(boundary(line.size() - end));
+}
+
+namespace {
+
+/// Characters, not their bytes.
+std::size_t characters(std::string_view text) {
+  return std::size_t(std::ranges::count_if(text, [](unsigned char c) { return (c & 0xc0) != 0x80; }));
+}
+
+std::size_t widest_line(std::string_view text) {
+  std::size_t most = 0;
+  for (std::size_t at = 0; at <= text.size();) {
+    const auto end = std::min(text.find('\n', at), text.size());
+    most = std::max(most, characters(text.substr(at, end - at)));
+    at = end + 1;
+  }
+  return most;
+}
+
+/// The heading in several rows, as far as its words are what makes a column wide.
+post::TextTable with_broken_heading(const post::TextTable& table) {
+  std::vector<std::vector<std::string>> heads;  // of each column, the lines
+  std::size_t most = 1;
+  for (std::size_t c = 0; c < table.rows.front().size(); ++c) {
+    std::size_t width = table.least_width > 2 ? table.least_width - 2 : 0;
+    for (std::size_t r = 1; r < table.rows.size(); ++r)
+      if (c < table.rows[r].size()) width = std::max(width, characters(table.rows[r][c]));
+    std::vector<std::string> lines = {""};
+    std::string_view left = table.rows.front()[c];
+    while (c > 0 && !left.empty()) {
+      const auto end = std::min(left.find(' '), left.size());
+      const std::string_view word = left.substr(0, end);
+      if (!lines.back().empty() && characters(lines.back()) + 1 + characters(word) > width) lines.emplace_back();
+      lines.back().append(lines.back().empty() ? "" : " ").append(word);
+      left.remove_prefix(std::min(end + 1, left.size()));
+    }
+    if (c == 0) lines.back() = left;
+    most = std::max(most, lines.size());
+    heads.push_back(std::move(lines));
+  }
+  post::TextTable out = table;
+  out.rows.front().assign(heads.size(), "");
+  out.rows.insert(out.rows.begin(), most - 1, out.rows.front());
+  for (std::size_t c = 0; c < heads.size(); ++c)  // the last line stands above the numbers
+    for (std::size_t k = 0; k < heads[c].size(); ++k) out.rows[most - heads[c].size() + k][c] = heads[c][k];
+  return out;
+}
+
+}  // namespace
+
+std::string folded(const post::TextTable& table, std::size_t width) {
+  const auto columns = [](const post::TextTable& of, std::size_t from, std::size_t to) {
+    post::TextTable part = of;
+    for (auto& row : part.rows) {
+      row.erase(row.begin() + long(std::min(to, row.size())), row.end());
+      if (!row.empty()) row.erase(row.begin() + 1, row.begin() + long(std::clamp(from, std::size_t(1), row.size())));
+    }
+    const auto says_nothing = [](const auto& row) { return std::ranges::all_of(row, &std::string::empty); };
+    while (!part.rows.empty() && says_nothing(part.rows.front()))
+      part.rows.erase(part.rows.begin());  // of longer heads
+    return part.text();
+  };
+  std::string whole = table.text();
+  if (width == 0 || widest_line(whole) <= width || widest_line(columns(table, 1, 1)) > width / 2) return whole;
+  const post::TextTable broken = with_broken_heading(table);
+  std::size_t all = 0;
+  for (const auto& row : broken.rows) all = std::max(all, row.size());
+  std::string out;
+  for (std::size_t from = 1; from < all;) {
+    std::size_t to = from + 1;
+    while (to < all && widest_line(columns(broken, from, to + 1)) <= width) ++to;
+    out += (out.empty() ? "" : "\n\n") + columns(broken, from, to);
+    from = to;
+  }
+  return out;
+}
+
+std::size_t terminal_width() {
+  winsize size{};
+  const bool known = ::isatty(STDOUT_FILENO) && ::ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0;
+  return known ? size.ws_col : 0;
 }
 
 void open_standard_streams() {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "golf/units.hpp"
 #include "models/sliding_friction.hpp"
 
 namespace hosel::models {
@@ -29,6 +30,7 @@ namespace {
   }
 
 constexpr double kTurn = 1.5;  // [rad]
+constexpr double kError = radians(10);
 
 /// Sets the coefficient of sliding; that of vanishing slip keeps its ratio to it.
 void slide(VolumetricLaw& law, double friction) {
@@ -78,10 +80,10 @@ constexpr std::array kParameters = {
     PLAIN("hertz_poisson", "", 0.0, 0.5, o.hertz_maw.poisson),
     PLAIN("hertz_friction", "", 0.0, 2.0, o.hertz_maw.friction),
     PLAIN("hertz_damping", "s_per_m", 0.0, 0.05, o.hertz_maw.damping),
-    OFFSET("loft_error", "deg", -0.2, 0.2, b.delivery.dynamic_loft),
-    OFFSET("face_error", "deg", -0.2, 0.2, b.delivery.face_angle),
-    OFFSET("path_error", "deg", -0.2, 0.2, b.delivery.club_path),
-    OFFSET("attack_error", "deg", -0.2, 0.2, b.delivery.attack_angle),
+    OFFSET("loft_error", "deg", -kError, kError, b.delivery.dynamic_loft),
+    OFFSET("face_error", "deg", -kError, kError, b.delivery.face_angle),
+    OFFSET("path_error", "deg", -kError, kError, b.delivery.club_path),
+    OFFSET("attack_error", "deg", -kError, kError, b.delivery.attack_angle),
     OFFSET("toe_error", "mm", -0.03, 0.03, b.delivery.impact_toe),
     OFFSET("high_error", "mm", -0.03, 0.03, b.delivery.impact_high),
 };

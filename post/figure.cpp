@@ -216,8 +216,9 @@ std::pair<std::string, std::string> panel_script(const Panel& p, int k, int widt
     if (p.map_contours)
       s += "set contour base\nset cntrparam cubicspline\nset cntrparam points 6\nset cntrparam levels " +
            contour_levels(p, width, height) +
-           "\n"
-           "set cntrlabel onecolor format '%.5g' start 8 interval 90 font ',8'\n"
+           // One number a line, off its end: points of a line are six for each cell that it crosses.
+           fmt::format("\nset cntrlabel onecolor format '%.5g' start {} interval -1 font ',8'\n",
+                       std::max<std::size_t>(8, 2 * std::min(p.map_x.size(), p.map_y.size()))) +
            "set style textbox opaque noborder fillcolor '#ffffff' margins 0.2,0.2\n";
     // Cells of one colour each: small enough that a coarse grid looks as smooth as a fine one.
     const auto parts = [](std::size_t points) {

@@ -79,7 +79,7 @@ class FaceReport {
     out_.say("\n" + title);
     for (const auto& [name, value] : layer.figures) {
       j["figures"][name] = value;
-      out_.say(fmt::format("  {:<48} {:>12.5g}", name, value));
+      out_.say(fmt::format("  {:<52} {:>12.5g}", post::label(name), value));
       if (!first || std::ranges::find(kAnswers, name) == kAnswers.end()) continue;
       const SplitName split = split_unit(name);
       out_.page().answer(post::spoken(split.stem), fmt::format("{:+.3g} {}", value, post::symbol(split.unit->suffix)),
@@ -113,7 +113,7 @@ class FaceReport {
       if (!(square > 0)) continue;
       const std::string unit = post::symbol(q.unit);
       j[q.name + "_share"] = product / square;
-      out_.say(fmt::format("  {:<48} {:>12.3f}", q.name, product / square));
+      out_.say(fmt::format("  {:<52} {:>12.3f}", post::spoken(q.name), product / square));
       if (std::ranges::find(kShown, q.name) == kShown.end()) continue;
       const std::string share = fmt::format("{}: {:.0f} % of it", post::spoken(q.name), 100 * product / square);
       double reach = 0;  // one range of colours for both, or the smaller one would look as large

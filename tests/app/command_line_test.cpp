@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/cases.hpp"
+#include "app/terminal.hpp"
 #include "command.hpp"
 
 namespace hosel::test {
@@ -272,6 +273,39 @@ TEST(CommandLine, AFolderThatIsNoCaseHidesNoShippedOne) {
   fs::current_path(before);
   EXPECT_TRUE(found.is_absolute() && fs::exists(found / "case.toml")) << found;
   EXPECT_EQ(own, "material-point");
+}
+
+/// A table wider than the terminal has its heading in several rows, and goes on below, its rows named again; one whose
+/// names are sentences does not.
+TEST(CommandLine, AWideTableFoldsInATerminal) {
+  const post::TextTable table{.rows = {{"point", "ball speed [m/s]", "launch angle [deg]", "backspin [rpm]"},
+                                       {"loft 10\xC2\xB0", "66.651", "7.8367", "2127"},
+                                       {"loft 15\xC2\xB0", "65.494", "11.879", "3063.5"}},
+                              .margin = 1,
+                              .least_width = 9,
+                              .even = false};
+  EXPECT_EQ(app::folded(table, 0), table.text());
+  EXPECT_EQ(app::folded(table, 200), table.text());
+  EXPECT_EQ(app::folded(table, 60),
+            "                       ball   launch          \n"
+            "                      speed    angle  backspin\n"
+            "point                 [m/s]    [deg]     [rpm]\n"
+            "loft 10\xC2\xB0             66.651   7.8367      2127\n"
+            "loft 15\xC2\xB0             65.494   11.879    3063.5");
+  EXPECT_EQ(app::folded(table, 40),
+            "                       ball   launch\n"
+            "                      speed    angle\n"
+            "point                 [m/s]    [deg]\n"
+            "loft 10\xC2\xB0             66.651   7.8367\n"
+            "loft 15\xC2\xB0             65.494   11.879\n"
+            "\n"
+            "                    backspin\n"
+            "point                  [rpm]\n"
+            "loft 10\xC2\xB0                2127\n"
+            "loft 15\xC2\xB0              3063.5");
+  post::TextTable sentences = table;
+  sentences.rows[1][0] = "the ball is faster with the club over the whole face";
+  EXPECT_EQ(app::folded(sentences, 80), sentences.text());
 }
 
 TEST(CommandLine, OpenSaysWhatIsMissing) {

@@ -102,6 +102,10 @@ TEST_F(FaceMapRun, HeavierHeadIsItsOwnEquivalentMass) {
     EXPECT_NEAR(figures.at(std::string("equivalent_head_mass_") + name + "_g").get<double>(), 2.5, 1e-3) << name;
   EXPECT_GT(figures.at("ball_speed_gain_min_mps").get<double>(), 0);
   EXPECT_EQ(figures.at("ball_speed_gain_positive_share").get<double>(), 1);
+  for (const char* label : {"  ball speed gain centre [m/s]  ", "  ball speed gain slope towards heel [m/s/mm]  ",
+                            "  largest gain toe [mm]  ", "  equivalent head mass mean [g]  "})
+    EXPECT_NE(outcome_.text.find(label), std::string::npos) << label << outcome_.text;
+  EXPECT_EQ(outcome_.text.find("_mps"), std::string::npos) << outcome_.text;
   // A formula may hold figures of the map and quantities of its places.
   const auto judged = summary().at("statements");
   ASSERT_EQ(judged.size(), 1u);

@@ -116,4 +116,19 @@ TEST(LoftSets, AnAxisThatPassesFromOneSetToTheNextIsDoubted) {
   EXPECT_EQ(study("[20.0, 22.0, 23.0]", "reduced = \"irons\"\n").status, 0);
 }
 
+/// A ball chooses its parameters by the loft of [delivery] before a study varies it.
+TEST(LoftSets, AStudyOverLoftSaysThatTheDeliveryHasNone) {
+  const fs::path dir = fresh_directory("loft_sets_none");
+  const auto study = [&](const std::string& loft) {
+    write(dir / "case/case.toml",
+          "kind = \"study\"\nmodels = [\"rigid-planar\"]\noutputs = [\"spin_rate_rpm\"]\n[[axis]]\nkey = "
+          "\"delivery.dynamic_loft_deg\"\nvalues = [11.0, 13.0]\n[delivery]\nclub_speed_mps = 40.0\n" +
+              loft + "[head]\nmass_kg = 0.2\n[ball]\nmodel = \"tour\"\n");
+    return command("run " + (dir / "case").string() + " --force --out " + (dir / "out").string());
+  };
+  expect_refused(study(""), "[delivery] has no dynamic_loft_deg to choose one by; a study that varies the loft");
+  const Outcome o = study("dynamic_loft_deg = 12\n");
+  EXPECT_EQ(o.status, 0) << o.text;
+}
+
 }  // namespace

@@ -421,6 +421,14 @@ TEST(Tune, AnEndOfAParameterIsItselfInAnyUnit) {
             std::string::npos);
 }
 
+TEST(Tune, ErrorsOfRecordedAnglesEndAtARoundOne) {
+  const std::string loft = "[[parameters]]\nname = \"loft_error\"\n";
+  const auto inside = chosen_shots("tune_loft_error", loft + "min_deg = -10\nmax_deg = 10\n");
+  EXPECT_EQ(test::command("check " + inside.string()).status, 0);
+  const std::string said = refused(chosen_shots("tune_loft_error", loft + "max_deg = 10.5\n"));
+  EXPECT_NE(said.find("-10 to 10 deg"), std::string::npos) << said;
+}
+
 TEST(Tune, AStartOutsideItsBoundsIsRefused) {
   const std::string said = refused(
       chosen_shots("tune_start", "[[parameters]]\nname = \"head_mass\"\nmin_g = 180\nmax_g = 220\nstart_g = 230\n"));

@@ -124,6 +124,12 @@ TEST(Figure, NumbersOfLevelLinesDoNotTouch) {
   EXPECT_EQ(levels(gentle), "auto 8");
 }
 
+/// One number on each level line of a map: two of one line would stand side by side in a small panel.
+TEST(Figure, ALevelLineHasOneNumber) {
+  const std::string script = gnuplot_script({.panels = {two_panels().panels[1]}}, "m", false);
+  EXPECT_NE(script.find("set cntrlabel onecolor format '%.5g' start 14 interval -1"), std::string::npos) << script;
+}
+
 /// What is round-off beside the other points is told as zero.
 TEST(Figure, RoundOffIsToldAsZero) {
   Panel p{.title = "m", .map_x = {-1, 1}, .map_y = {0, 1}, .map = {-0.0, 6.0467e-14, 5, 7}, .map_label = " [rpm]"};
