@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
+#include <tuple>
 
 #include "golf/data_error.hpp"
 #include "golf/dense.hpp"

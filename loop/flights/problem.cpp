@@ -257,7 +257,8 @@ void FlightProblem::expand(const Model& model, const Eigen::VectorXd& p) {
   for (int pass = 0; pass < most; ++pass) {
     slopes(model, p);
     if (!errors(all, model, p, e)) break;
-    const std::vector<Trial> trials_before = trials_;
+    std::vector<models::ShotUnknowns> own_before;
+    for (const Trial& t : trials_) own_before.push_back(t.own);
     const std::vector<GroupUnknowns> group_before = group_;
     double change = 0;
     const GroupUnknowns of_group = group_sd();
@@ -295,7 +296,7 @@ void FlightProblem::expand(const Model& model, const Eigen::VectorXd& p) {
         if (e.row(Eigen::Index(i)).array().isInf().any()) without.insert(trials_[std::size_t(all[i])].shot.group);
       for (const int i : all)
         if (Trial& t = trials_[std::size_t(i)]; without.contains(t.shot.group)) {
-          const auto& before = trials_before[std::size_t(i)].own;
+          const auto& before = own_before[std::size_t(i)];
           t.own = before + way * (t.own - before);
         }
       for (const int g : without) {
