@@ -5,6 +5,8 @@
 #include <cmath>
 #include <set>
 
+#include "loop/rules.hpp"
+
 namespace hosel::loop {
 
 Likeness likeness(const std::vector<EffectColumn>& columns, const Eigen::MatrixXd& fitted) {

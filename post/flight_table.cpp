@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "golf/units.hpp"
+#include "post/labels.hpp"
 
 namespace hosel::post {
 namespace {

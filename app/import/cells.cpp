@@ -4,6 +4,7 @@
 #include <array>
 #include <cctype>
 #include <charconv>
+#include <map>
 #include <set>
 #include <span>
 #include <utility>
@@ -22,7 +23,7 @@ std::string trimmed(std::string_view s) {
 
 std::string lower(std::string_view text) {
   std::string out(text);
-  std::ranges::transform(out, out.begin(), [](unsigned char c) { return std::tolower(c); });
+  std::ranges::transform(out, out.begin(), [](char c) { return c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c; });
   return out;
 }
 
@@ -75,7 +76,7 @@ std::vector<std::string> words_of(std::string_view text, std::string_view betwee
 std::string unit_of(std::string text) {
   text = lower(text);
   std::erase_if(text, [](char c) { return c == '[' || c == ']' || c == '(' || c == ')' || c == ' ' || c == '.'; });
-  static const std::vector<std::pair<std::string, std::set<std::string>>> spellings = {
+  static const std::vector<std::pair<std::string, std::vector<std::string>>> spellings = {
       {"mph", {"mph", "mi/h"}},
       {"kmh", {"kmh", "km/h", "kph", "km/u", "km/t", "км/ч"}},
       {"mps", {"mps", "m/s", "m/sec", "м/с"}},
@@ -102,9 +103,14 @@ std::string unit_of(std::string text) {
       {"kg", {"kg"}},
       {"g", {"g", "grams"}},
       {"pct", {"%"}}};
-  for (const auto& [unit, words] : spellings)
-    if (words.contains(text)) return unit;
-  return "";
+  static const std::map<std::string, std::string> units = [] {
+    std::map<std::string, std::string> out;
+    for (const auto& [unit, words] : spellings)
+      for (const std::string& word : words) out.emplace(word, unit);
+    return out;
+  }();
+  const auto at = units.find(text);
+  return at == units.end() ? "" : at->second;
 }
 
 std::string unit_in(const std::string& header) {

@@ -20,11 +20,16 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// What a letter is compared as: lower case without accent, a blank for punctuation, nothing for a mark or a symbol.
-/// Other scripts keep their letters.
+/// What a character of ASCII is compared as: lower case, a blank for punctuation.
+char folded(char c) {
+  if (c >= 'A' && c <= 'Z') return char(c - 'A' + 'a');
+  return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') ? c : ' ';
+}
+
+/// The same of any character: without accent, nothing for a mark or a symbol. Other scripts keep their letters.
 std::u32string folded(char32_t c) {
   if (c >= 0xFF01 && c <= 0xFF5E) c -= 0xFEE0;  // full width
-  if (c < 0x80) return {std::isalnum(int(c)) ? char32_t(std::tolower(int(c))) : U' '};
+  if (c < 0x80) return {char32_t(folded(char(c)))};
   if (c < 0xC0) return {};  // degrees, ordinals
   // From U+00C0 on; a dot: no letter, or one that becomes two.
   constexpr std::string_view base =
@@ -51,28 +56,43 @@ std::u32string folded(char32_t c) {
 }  // namespace
 
 std::string plain(std::string_view text) {
-  std::string valid, out;
-  utf8::replace_invalid(text.begin(), text.end(), std::back_inserter(valid), U'?');
+  std::string out;
+  out.reserve(text.size());
   int depth = 0;
-  for (auto at = valid.begin(); at != valid.end();) {
-    const char32_t c = utf8::next(at, valid.end());
+  const auto take = [&](char32_t c) {
     const bool opens = c == '(' || c == '[' || c == 0xFF08, closes = c == ')' || c == ']' || c == 0xFF09;
     if (opens) ++depth;
-    if (depth == 0)
+    if (depth == 0 && c < 0x80) {
+      if (const char letter = folded(char(c)); letter != ' ' || (!out.empty() && out.back() != ' ')) out += letter;
+    } else if (depth == 0) {
       for (const char32_t letter : folded(c))
         if (letter != ' ' || (!out.empty() && out.back() != ' ')) utf8::append(letter, out);
+    }
     if (closes && depth > 0) --depth;
+  };
+  if (std::ranges::all_of(text, [](char c) { return static_cast<unsigned char>(c) < 0x80; })) {
+    for (const char c : text) take(char32_t(c));
+  } else {
+    std::string valid;
+    utf8::replace_invalid(text.begin(), text.end(), std::back_inserter(valid), U'?');
+    for (auto at = valid.begin(); at != valid.end();) take(utf8::next(at, valid.end()));
   }
   while (!out.empty() && out.back() == ' ') out.pop_back();
   return out;
 }
 
-std::string letters(std::string_view header) {
-  std::string out = plain(header);
-  if (out.empty()) out = lower(header);  // signs alone: `#` is not `%`
-  std::erase(out, ' ');
-  return out;
+namespace {
+
+/// As `letters` has it, of a header that is `words` as `plain` has it.
+std::string letters_of(std::string words, std::string_view header) {
+  if (words.empty()) words = lower(header);  // signs alone: `#` is not `%`
+  std::erase(words, ' ');
+  return words;
 }
+
+}  // namespace
+
+std::string letters(std::string_view header) { return letters_of(plain(header), header); }
 
 bool names_a_hand(const std::string& words) {
   const std::string apart = ' ' + words + ' ';
@@ -158,10 +178,10 @@ const MonitorQuantity* Dictionary::quantity_of(const std::string& header) const 
 }
 
 std::string Dictionary::bookkeeping_of(const std::string& header) const {
-  const std::string word = letters(header);
-  for (const auto& [name, words] : bookkeeping_)
-    if (std::ranges::count(words, word)) return name;
-  return names_a_hand(plain(header)) || says("lefty", header) || says("righty", header) ? "hand" : "";
+  const std::string words = plain(header), word = letters_of(words, header);
+  for (const auto& [name, known] : bookkeeping_)
+    if (std::ranges::find(known, word) != known.end()) return name;
+  return names_a_hand(words) || lists("lefty", words) || lists("righty", words) ? "hand" : "";
 }
 
 void Dictionary::learn(const std::string& header, std::string_view quantity) {
@@ -189,17 +209,18 @@ std::vector<std::string> Dictionary::roles() const {
   return out;
 }
 
-bool Dictionary::says(std::string_view list, const std::string& cell) const {
+bool Dictionary::says(std::string_view list, const std::string& cell) const { return lists(list, plain(cell)); }
+
+bool Dictionary::lists(std::string_view list, const std::string& word) const {
   const auto at = words_.find(list);
-  const std::string word = plain(cell);
-  return at != words_.end() && !word.empty() && std::ranges::count(at->second, word);
+  return at != words_.end() && !word.empty() && std::ranges::find(at->second, word) != at->second.end();
 }
 
 bool Dictionary::begins_or_ends(std::string_view list, const std::string& cell) const {
   const std::string word = plain(cell);
   const std::string last = word.substr(word.rfind(' ') + 1);
-  return says(list, cell) || says(list, word.substr(0, word.find(' '))) || says(list, last) ||
-         says(std::string(list) + "_end", last);
+  return lists(list, word) || lists(list, word.substr(0, word.find(' '))) || lists(list, last) ||
+         lists(std::string(list) + "_end", last);
 }
 
 namespace {

@@ -68,7 +68,8 @@ class Dictionary {
   const std::map<std::string, NominalHead>& heads() const { return heads_; }
 
  private:
-  std::string own_key(const std::string& name) const;  ///< without what nominal clubs are called
+  bool lists(std::string_view list, const std::string& word) const;  ///< `says` of a word as `plain` has it
+  std::string own_key(const std::string& name) const;                ///< without what nominal clubs are called
   std::vector<MonitorQuantity> quantities_;
   std::map<std::string, std::vector<std::string>, std::less<>> bookkeeping_, words_;
   std::vector<NominalClub> clubs_;

@@ -71,14 +71,19 @@ std::vector<std::string> PlateDesign::faults() const {
 }
 
 double PlateDesign::mass() const {
-  constexpr int across = 240, up = 160;  // cells over the outline's extent
-  const Vector2d extent = outline.extent(), cell(2 * extent.x() / across, 2 * extent.y() / up);
+  // Along rays: an outline's reach takes powers, a thickness does not.
+  constexpr int rays = 240, along = 40;
+  const Vector2d extent = outline.extent();
   double volume = 0;
-  for (int j = 0; j < up; ++j)
-    for (int i = 0; i < across; ++i) {
-      const Vector2d place = Vector2d((i + 0.5) * cell.x(), (j + 0.5) * cell.y()) - extent;
-      if (const double share = outline.share(place); share < 1) volume += thickness.at(place, share) * cell.prod();
+  for (int k = 0; k < rays; ++k) {
+    const double angle = 2 * kPi * (k + 0.5) / rays;
+    const Vector2d direction(extent.x() * std::cos(angle), extent.y() * std::sin(angle));
+    const double reach = outline.reach(direction), sector = 2 * kPi / rays * extent.prod() * reach * reach;
+    for (int i = 0; i < along; ++i) {
+      const double share = (i + 0.5) / along;
+      volume += sector * share / along * thickness.at(share * reach * direction, share);
     }
+  }
   return material.density * volume;
 }
 

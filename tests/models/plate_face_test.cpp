@@ -31,6 +31,20 @@ FeImpactOptions with_plate(const PlateDesign& d) {
   return o;
 }
 
+/// By formulas: pi a b t of an ellipse, pi w h / 3 times what a bulge rises, 4 a b t of a rectangle. 240 rays miss a
+/// rectangle's corners by (2 pi / 240)^2 of their sectors.
+TEST(PlateDesign, MassIsDensityTimesVolume) {
+  PlateDesign d = plate_design();
+  const double a = d.outline.half_width, b = d.outline.half_height;
+  EXPECT_NEAR(d.mass(), d.material.density * kPi * (2.4e-3 * a * b + 0.8e-3 * 0.03 * 0.018 / 3), 2e-4 * d.mass());
+  d.thickness.map = mesh::PlateThickness::Constant{2e-3};
+  EXPECT_NEAR(d.mass(), d.material.density * kPi * 2e-3 * a * b, 1e-9);
+  d.outline.form = mesh::PlateOutline::Form::rectangle;
+  EXPECT_NEAR(d.mass(), d.material.density * 4 * 2e-3 * a * b, 2e-3 * d.mass());
+  d.outline = {.form = mesh::PlateOutline::Form::polygon, .corners = {{a, b}, {-a, b}, {-a, -b}, {a, -b}}};
+  EXPECT_NEAR(d.mass(), d.material.density * 4 * 2e-3 * a * b, 2e-3 * d.mass());
+}
+
 /// The static shape about the place is among the condensed ones: compliance there is the plate's own.
 TEST(PlateFace, CondensationKeepsTheComplianceWhereItIsStruck) {
   const PlateFace plate(plate_design(), {0.3, 0.3});
