@@ -48,8 +48,8 @@ ByHand read_by_hand(const ImportOptions& o, Dictionary& d) {
       d.learn(header, "");
       continue;
     }
-    const std::vector<std::string> roles = d.roles();
-    if (std::ranges::count(roles, name)) {
+    const auto& roles = d.roles();
+    if (roles.contains(name)) {
       d.learn(header, name);
       by_hand.erase(header_key(header));
       continue;

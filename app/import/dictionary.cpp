@@ -9,7 +9,6 @@
 #include <iterator>
 #include <map>
 #include <set>
-#include <tuple>
 
 #include "app/reader.hpp"
 #include "build_info.hpp"
@@ -95,6 +94,7 @@ std::string letters_of(std::string words, std::string_view header) {
 std::string letters(std::string_view header) { return letters_of(plain(header), header); }
 
 bool names_a_hand(const std::string& words) {
+  if (words.find("hand") == words.npos && words.find("dexterity") == words.npos) return false;
   const std::string apart = ' ' + words + ' ';
   const auto says = [&](const char* word) { return apart.find(word) != apart.npos; };
   return apart.ends_with(" hand ") || says(" handed ") || says(" handedness ") || says(" dexterity ");
@@ -124,17 +124,16 @@ void Dictionary::read(const fs::path& file) {
                                                                                                   : Sides::across;
     q.zero = t.choice("zero", {"reading", "no reading"}, "reading") == "reading";
     for (const std::string& h : t.texts("headers"))
-      q.headers.push_back({letters(h), h.find('[') == h.npos ? "" : unit_in(h)});
-    q.headers.push_back({letters(q.name), ""});
+      quantity_by_letters_[letters(h)].push_back({quantities_.size(), h.find('[') == h.npos ? "" : unit_in(h)});
+    quantity_by_letters_[letters(q.name)].push_back({quantities_.size(), ""});
     quantities_.push_back(std::move(q));
   }
-  for (const auto& [name, into, as] : {std::tuple{"bookkeeping", &bookkeeping_, &letters}, {"words", &words_, &plain}})
-    if (auto t = root.optional_table(name))
-      for (const std::string& key : t->keys()) {
-        const auto words = each(t->texts(key), as);
-        auto& known = (*into)[key];
-        known.insert(known.end(), words.begin(), words.end());
-      }
+  if (auto t = root.optional_table("bookkeeping"))
+    for (const std::string& role : t->keys())
+      for (const std::string& word : each(t->texts(role), letters)) add(role, word);
+  if (auto t = root.optional_table("words"))
+    for (const std::string& key : t->keys())
+      for (std::string& word : each(t->texts(key), plain)) words_[key].push_back(std::move(word));
   for (Table& t : root.tables("club"))
     clubs_.push_back({.names = each(t.texts("names"), plain),
                       .head_mass = t.number("head_mass_kg", {0.1, 0.5}),
@@ -163,33 +162,55 @@ fs::path shipped_dictionary() {
   return fs::exists(beside) ? beside : fs::path(HOSEL_INSTALLED_CASES).parent_path() / "launch_monitors.toml";
 }
 
+const MonitorQuantity* Dictionary::quantity_of(const std::string& letters, const std::string& header) const {
+  const auto at = quantity_by_letters_.find(letters);
+  if (at == quantity_by_letters_.end()) return nullptr;
+  const MonitorQuantity* first = nullptr;  // of several, the one that was read first
+  for (const Meaning& m : at->second)
+    if (const MonitorQuantity* q = &quantities_[m.quantity]; !first || q < first)
+      if (m.unit.empty() || m.unit == unit_in(header)) first = q;
+  return first;
+}
+
 const MonitorQuantity* Dictionary::quantity_of(const std::string& header) const {
-  const auto called = [&](const std::string& word) -> const MonitorQuantity* {
-    for (const MonitorQuantity& q : quantities_)
-      for (const MonitorQuantity::Header& h : q.headers)
-        if (h.words == word && (h.unit.empty() || h.unit == unit_in(header))) return &q;
-    return nullptr;
-  };
-  if (const MonitorQuantity* q = called(letters(header))) return q;
+  const MonitorQuantity* q = quantity_of(letters(header), header);
+  return q ? q : quantity_before_unit(header);
+}
+
+const MonitorQuantity* Dictionary::quantity_before_unit(const std::string& header) const {
   const auto tail = unit_tail(header);
   if (tail == header.size() || header.back() == ')' || unit_of(header.substr(tail)).empty()) return nullptr;
-  const std::string before = plain(std::string_view(header).substr(0, tail));
-  return called(letters(before.ends_with(" in") ? before.substr(0, before.size() - 3) : before));
+  std::string before = plain(std::string_view(header).substr(0, tail));
+  if (before.ends_with(" in")) before.resize(before.size() - 3);
+  return quantity_of(letters_of(before, before), header);
 }
 
 std::string Dictionary::bookkeeping_of(const std::string& header) const {
-  const std::string words = plain(header), word = letters_of(words, header);
-  for (const auto& [name, known] : bookkeeping_)
-    if (std::ranges::find(known, word) != known.end()) return name;
+  const std::string words = plain(header);
+  return role_of(words, letters_of(words, header));
+}
+
+bool Dictionary::knows(const std::string& header) const {
+  const std::string words = plain(header), letters = letters_of(words, header);
+  return quantity_of(letters, header) || !role_of(words, letters).empty() || quantity_before_unit(header);
+}
+
+std::string Dictionary::role_of(const std::string& words, const std::string& letters) const {
+  if (const auto at = role_by_letters_.find(letters); at != role_by_letters_.end()) return at->second;
   return names_a_hand(words) || lists("lefty", words) || lists("righty", words) ? "hand" : "";
 }
 
+void Dictionary::add(const std::string& role, const std::string& letters) {
+  roles_.insert(role);
+  std::string& known = role_by_letters_[letters];
+  if (known.empty() || role < known) known = role;
+}
+
 void Dictionary::learn(const std::string& header, std::string_view quantity) {
-  if (quantity.empty()) bookkeeping_["ignored"].push_back(letters(header));
-  if (const auto role = bookkeeping_.find(std::string(quantity)); role != bookkeeping_.end())
-    role->second.push_back(letters(header));
-  for (MonitorQuantity& q : quantities_)
-    if (q.name == quantity) q.headers.push_back({letters(header), ""});
+  if (quantity.empty()) add("ignored", letters(header));
+  if (const auto role = roles_.find(quantity); role != roles_.end()) add(*role, letters(header));
+  for (std::size_t i = 0; i < quantities_.size(); ++i)
+    if (quantities_[i].name == quantity) quantity_by_letters_[letters(header)].push_back({i, ""});
 }
 
 const MonitorQuantity* Dictionary::quantity(std::string_view name) const {
@@ -200,12 +221,6 @@ const MonitorQuantity* Dictionary::quantity(std::string_view name) const {
 std::vector<std::string> Dictionary::quantity_names() const {
   std::vector<std::string> out;
   for (const MonitorQuantity& q : quantities_) out.push_back(q.name);
-  return out;
-}
-
-std::vector<std::string> Dictionary::roles() const {
-  std::vector<std::string> out;
-  for (const auto& [name, words] : bookkeeping_) out.push_back(name);
   return out;
 }
 

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <map>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -17,10 +18,6 @@ struct MonitorQuantity {
   double least = 0, greatest = 0;  ///< of a cell: beyond them no instrument has measured it [SI]
   Sides sides = Sides::none;       ///< words that cells and headers may have
   bool zero = true;                ///< 0 may be measured, else it stands for no reading
-  struct Header {
-    std::string words, unit;  ///< unit: that a header must have to be meant; empty: any
-  };
-  std::vector<Header> headers;
 };
 struct NominalClub {
   std::vector<std::string> names, keys;  ///< keys: `club_key` of each name
@@ -52,8 +49,8 @@ class Dictionary {
   const MonitorQuantity* quantity(std::string_view name) const;
   std::vector<std::string> quantity_names() const;
   std::string bookkeeping_of(const std::string& header) const;  ///< the role of a header, "" where it has none
-  bool knows(const std::string& header) const { return quantity_of(header) || !bookkeeping_of(header).empty(); }
-  std::vector<std::string> roles() const;  ///< club, shot, hand, ...
+  bool knows(const std::string& header) const;  ///< whether it has a quantity or a role
+  const std::set<std::string, std::less<>>& roles() const { return roles_; }  ///< club, shot, hand, ...
   /// `7Iron`, `7-iron`, `Iron 7`, `7i`, `i7`, `Eisen 7` are one club, `DR` and `Driver` another. Words beside it are
   /// its brand's: `7I - Srixon ZX5`.
   const NominalClub* club(const std::string& name) const;
@@ -68,10 +65,21 @@ class Dictionary {
   const std::map<std::string, NominalHead>& heads() const { return heads_; }
 
  private:
+  struct Meaning {
+    std::size_t quantity;
+    std::string unit;  ///< that a header must have to be meant; empty: any
+  };
+  const MonitorQuantity* quantity_of(const std::string& letters, const std::string& header) const;
+  const MonitorQuantity* quantity_before_unit(const std::string& header) const;  ///< `Ball Speed mph`
+  std::string role_of(const std::string& words, const std::string& letters) const;
   bool lists(std::string_view list, const std::string& word) const;  ///< `says` of a word as `plain` has it
-  std::string own_key(const std::string& name) const;                ///< without what nominal clubs are called
+  void add(const std::string& role, const std::string& letters);
+  std::string own_key(const std::string& name) const;  ///< without what nominal clubs are called
   std::vector<MonitorQuantity> quantities_;
-  std::map<std::string, std::vector<std::string>, std::less<>> bookkeeping_, words_;
+  std::map<std::string, std::vector<Meaning>> quantity_by_letters_;  ///< as `letters` has a header
+  std::map<std::string, std::string> role_by_letters_;
+  std::set<std::string, std::less<>> roles_;
+  std::map<std::string, std::vector<std::string>, std::less<>> words_;
   std::vector<NominalClub> clubs_;
   std::vector<MonitorLayout> layouts_;
   std::map<std::string, NominalHead> heads_;

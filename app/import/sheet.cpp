@@ -137,7 +137,7 @@ std::string cell_of(const nlohmann::json& value) { return value.is_string() ? va
 /// The part of a path of names that the dictionary knows, from the left: `data Measurement BallSpeed` -> `BallSpeed`.
 std::string known_name(const Dictionary& d, std::string path) {
   while (!path.empty()) {
-    if (d.quantity_of(path) || !d.bookkeeping_of(path).empty()) return path;
+    if (d.knows(path)) return path;
     const auto blank = path.find(' ');
     path = blank == std::string::npos ? "" : path.substr(blank + 1);
   }
