@@ -54,4 +54,10 @@ std::vector<std::string> implausible_rows(const loop::Shots& shots) {
   return out;
 }
 
+std::string repeated_rows(const loop::Shots& shots) {
+  if (shots.repeated == 0) return "";
+  return fmt::format("{} of the shots {} an earlier row: each shot counts once", post::counted(shots.repeated, "row"),
+                     shots.repeated == 1 ? "repeats" : "repeat");
+}
+
 }  // namespace hosel::app

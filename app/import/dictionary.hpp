@@ -49,7 +49,7 @@ class Dictionary {
   const MonitorQuantity* quantity(std::string_view name) const;
   std::vector<std::string> quantity_names() const;
   std::string bookkeeping_of(const std::string& header) const;  ///< the role of a header, "" where it has none
-  bool knows(const std::string& header) const;  ///< whether it has a quantity or a role
+  bool knows(const std::string& header) const;                  ///< whether it has a quantity or a role
   const std::set<std::string, std::less<>>& roles() const { return roles_; }  ///< club, shot, hand, ...
   /// `7Iron`, `7-iron`, `Iron 7`, `7i`, `i7`, `Eisen 7` are one club, `DR` and `Driver` another. Words beside it are
   /// its brand's: `7I - Srixon ZX5`.

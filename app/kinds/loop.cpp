@@ -108,7 +108,7 @@ class LoopJob final : public Job {
     if (skipped_.empty()) try {
         case_.shots = loop::read_shots(post::read_csv(path), case_.flight.has_value());
         if (joined) loop::join(case_.shots, post::read_csv(joined->first), joined->second);
-        repeated_ = case_.shots.repeated;
+        repeated_ = repeated_rows(case_.shots);
         if (case_.shots.rows() <= loop::kMostShots)  // else it is refused
           for (const std::string& rows : implausible_rows(case_.shots)) data.doubt(rows);
         if (!average_by.empty()) {
@@ -134,8 +134,7 @@ class LoopJob final : public Job {
 
   void run(Output& out) override {
     if (!skipped_.empty()) return out.skip(skipped_);
-    if (repeated_ > 0)
-      out.lack(fmt::format("{} rows of the shots repeat an earlier row: each shot counts once", repeated_));
+    if (!repeated_.empty()) out.lack(repeated_);
     const loop::LoopResult result = run_loop(out, case_);
     if (result.corrected) write_corrected(out, result, *fe_, case_.loft_unknown);
     withdraw_offers(out);
@@ -275,7 +274,7 @@ class LoopJob final : public Job {
   std::filesystem::path skipped_;
   std::optional<loop::Shots> landings_;
   bool mirrored_ = false;
-  std::size_t repeated_ = 0;  // rows of the file
+  std::string repeated_;  // of the file's rows, not of their means
   HeadWords words_;
 };
 

@@ -46,6 +46,7 @@ class LoopFlightJob final : public Job {
 
   void run(Output& out) override {
     if (!skipped_.empty()) return out.skip(skipped_);
+    if (const std::string repeated = repeated_rows(case_.shots); !repeated.empty()) out.lack(repeated);
     const loop::LoopResult result = run_loop(out, case_);
     report_loop(out, result, case_.shots, "flights");
     for (const std::string& note : result.notes)
@@ -174,11 +175,14 @@ class LoopFlightJob final : public Job {
       if (what == "ends")
         for (const double x : {f.carry, f.side, f.apex, f.time}) cells.push_back(text(x));
       for (std::size_t c = 0; c < cells.size(); ++c) sheet.columns[c].push_back(cells[c]);
-      sheet.lines.push_back(sheet.lines.size() + 2);
-      case_.air.push_back(f.path.air);
-      case_.deviations.push_back(f.path.sd);
+      sheet.lines.push_back(sheet.lines.size());
     }
     case_.shots = loop::read_shots(sheet, true);
+    const std::vector<std::size_t>& flights = case_.shots.line;  // of the rows that are left: copies are not
+    for (const std::size_t i : flights) {
+      case_.air.push_back(data.flights[i].path.air);
+      case_.deviations.push_back(data.flights[i].path.sd);
+    }
     if (what == "ends") return;
     case_.position_noise = data.model.noise;
     std::vector<double> instants;
@@ -191,10 +195,10 @@ class LoopFlightJob final : public Job {
       if (seen(t)) instants.push_back(t);
     for (const double t : instants)
       for (int axis = 0; axis < 3; ++axis) case_.points.push_back({axis, t});
-    case_.positions = Eigen::MatrixXd::Constant(Eigen::Index(data.flights.size()), Eigen::Index(case_.points.size()),
+    case_.positions = Eigen::MatrixXd::Constant(Eigen::Index(flights.size()), Eigen::Index(case_.points.size()),
                                                 std::numeric_limits<double>::quiet_NaN());
-    for (std::size_t i = 0; i < data.flights.size(); ++i) {
-      const models::MeasuredPath& p = data.flights[i].path;
+    for (std::size_t i = 0; i < flights.size(); ++i) {
+      const models::MeasuredPath& p = data.flights[flights[i]].path;
       for (std::size_t k = 0; k < p.times.size(); ++k)
         for (std::size_t j = 0; j < instants.size(); ++j)
           if (std::abs(p.times[k] - instants[j]) < 1e-6) {

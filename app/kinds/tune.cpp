@@ -209,8 +209,7 @@ class TuneJob final : public Job {
       if (!join_by_.empty()) loop::join(shots, post::read_csv(join_file_), join_by_);
     } catch (const DataError& e) { throw InputError(e.what()); }
     for (const std::string& rows : implausible_rows(shots)) out.warn(rows);
-    if (shots.repeated > 0)
-      out.lack(fmt::format("{} rows of the shots repeat an earlier row: each shot counts once", shots.repeated));
+    if (const std::string repeated = repeated_rows(shots); !repeated.empty()) out.lack(repeated);
     std::vector<std::pair<Input, const loop::Column*>> inputs;
     for (int i = 0; i < kInputs; ++i) {
       const auto input = static_cast<Input>(i);

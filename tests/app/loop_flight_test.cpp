@@ -3,6 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
+#include <fstream>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "app/read_paths.hpp"
@@ -43,6 +46,58 @@ TEST(LoopFlight, SaysWhatIsWrong) {
   EXPECT_NE(error("--set flight.turf.rolling=0.1").find("end at the first landing"), std::string::npos);
   EXPECT_NE(error("--set 'data.paths=\"shots.csv\"' --set data.position_noise_m=0.1").find("time_s"),
             std::string::npos);
+}
+
+/// A shot that stands twice, under its own number or another, counts once, and that is said.
+TEST(LoopFlight, ARowThatRepeatsIsTold) {
+  const fs::path dir = fresh_directory("loop_flights_repeat");
+  const std::string text = content(kCase / "shots.csv");
+  const auto second = text.find('\n') + 1, third = text.find('\n', second) + 1;
+  const std::string row = text.substr(second, third - second);
+  write(dir / "case" / "case.toml", content(kCase / "case.toml"));
+  write(dir / "case" / "shots.csv", text + row + "999" + row.substr(row.find(',')));
+  const Outcome o = command("run " + (dir / "case").string() + " --set 'model.effects=[\"drag-level\"]' --out " +
+                            (dir / "out").string());
+  ASSERT_EQ(o.status, 0) << o.text;
+  EXPECT_NE(o.text.find("2 rows of the shots repeat an earlier row: each shot counts once"), std::string::npos)
+      << o.text;
+  EXPECT_EQ(nlohmann::json::parse(content(dir / "out" / "report.json"))["rows"]["used"], 80);
+}
+
+/// Every row keeps the air of its own flight where a copied flight before it is left out.
+TEST(LoopFlight, ACopiedFlightOfARadarChangesNothing) {
+  const char* data = std::getenv("HOSEL_DATA");
+  const fs::path file = fs::path(data ? data : "") / "radar_flights" / "trajectories.csv";
+  if (!data || !fs::exists(file)) GTEST_SKIP() << "HOSEL_DATA names no radar_flights";
+  const fs::path dir = fresh_directory("loop_radar_copy");
+  std::ifstream in(file);
+  std::string head, line;
+  std::getline(in, head);
+  std::map<std::string, std::vector<std::string>> events;  // twelve flights each: one air each
+  while (std::getline(in, line))
+    if (auto& of = events[line.substr(0, line.find(','))]; of.size() < 12) of.push_back(line);
+  const auto &thin = events.at("006"), &dense = events.at("016");
+  const auto report = [&](const std::string& name, bool copied) {
+    std::string csv = head + '\n';
+    for (std::size_t i = 0; i < thin.size(); ++i) csv += thin[i] + '\n' + (copied && i == 1 ? thin[i] + '\n' : "");
+    for (const std::string& flight : dense) csv += flight + '\n';
+    write(dir / name / "flights.csv", csv);
+    write(dir / name / "case.toml",
+          "kind = \"loop\"\n[model]\nbase = \"flight\"\neffects = [\"drag-level\"]\n[flight]\n[paths]\n"
+          "file = \"flights.csv\"\ngroup_by = [\"event\"]\nchannels = \"ends\"\nnoise_m = 0.5\nwind_mps = 3.0\n"
+          "carry_noise_m = 2\nside_noise_m = 2\napex_noise_m = 1\ntime_noise_s = 0.1\n"
+          "[split]\nby = \"player\"\n[[paths.site]]\nevent = \"006\"\ndensity_kg_per_m3 = 0.9\n"
+          "[[paths.site]]\nevent = \"016\"\ndensity_kg_per_m3 = 1.3\n");
+    const Outcome o = command("run " + (dir / name).string() + " --out " + (dir / name / "out").string());
+    EXPECT_EQ(o.status, 0) << o.text;
+    EXPECT_EQ(o.text.find("1 row of the shots repeats") != std::string::npos, copied) << o.text;
+    return nlohmann::json::parse(content(dir / name / "out" / "report.json"));
+  };
+  const auto once = report("once", false), copied = report("copied", true);
+  ASSERT_GT(once["rows"]["used"], 12);
+  EXPECT_EQ(once["rows"]["used"], copied["rows"]["used"]);
+  for (std::size_t c = 0; c < once["channels"].size(); ++c)
+    EXPECT_EQ(once["channels"][c]["before"], copied["channels"][c]["before"]) << once["channels"][c].dump();
 }
 
 /// Positions at common instants are channels: three a time.
