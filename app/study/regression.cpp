@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 
+#include "app/implausible.hpp"
 #include "golf/quantities.hpp"
 #include "loop/deviation.hpp"
 #include "loop/shots/shots.hpp"
@@ -49,6 +50,7 @@ std::optional<StudyRegression> read_regression(Table root) {
   try {
     shots = loop::read_shots(post::read_csv(r.file));
   } catch (const DataError& e) { throw InputError(e.what()); }
+  r.repeated = repeated_rows(shots);
   std::vector<const loop::Column*> needed;
   for (const std::string& name : r.on) needed.push_back(shots.find_stem(split_unit(name).stem));
   for (const std::string& name : r.of)
@@ -79,6 +81,7 @@ nlohmann::json report_regression(Output& out, const StudyRegression& r) {
         fmt::format("no regression: {} is not there; HOSEL_DATA names the folder of measured files", r.file.string()));
     return nullptr;
   }
+  if (!r.repeated.empty()) out.lack(r.repeated);
   const std::size_t n = r.y.front().size();
   nlohmann::json json = {{"rows", n}, {"of_rows", r.rows}};
   Eigen::MatrixXd X = Eigen::MatrixXd::Ones(Eigen::Index(n), 1 + Eigen::Index(r.on.size()));

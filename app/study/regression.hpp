@@ -16,6 +16,7 @@ namespace hosel::app {
 
 struct StudyRegression {
   std::filesystem::path file;             ///< where it is not there, nothing else is here
+  std::string repeated;                   ///< a sentence where shots stand in the file more than once
   std::vector<std::string> of, on;        ///< quantities of the launch, inputs of the blow, each with its unit
   std::size_t rows = 0;                   ///< of the range of numbers, whole or not
   std::vector<std::vector<double>> y, x;  ///< one each of `of` and `on`: their numbers in the whole rows, in that unit

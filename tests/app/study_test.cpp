@@ -263,6 +263,7 @@ TEST(Study, RegressesShotsAndPropagatesDeviations) {
         << ",12,2500," << -40 * toe + 0.1 * ((i * 5) % 9 - 4) << '\n';
     shots += row.str();
   }
+  shots += shots.substr(shots.rfind('\n', shots.size() - 2) + 1);  // the last one again
   write(dir / "case/shots.csv", shots);
   write(dir / "case/rows.csv",
         "name,head.mass_kg,contact.restitution\nown,0.2,0.8\nheavier,0.204,0.8\nlivelier,0.2,0.82\n");
@@ -298,6 +299,7 @@ restitution_slope_s_per_m = 0.0
 )");
   const Outcome run = command("run " + (dir / "case").string() + " --out " + (dir / "out").string());
   ASSERT_EQ(run.status, 0) << run.text;
+  EXPECT_NE(run.text.find("1 row of the shots repeats an earlier row"), std::string::npos) << run.text;
   const auto said = nlohmann::json::parse(content(dir / "out" / "summary.json"));
   const auto& slopes = said["regression"]["slopes"];
   EXPECT_EQ(said["regression"]["rows"], 40);
