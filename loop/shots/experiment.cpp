@@ -147,7 +147,25 @@ class Separation {
     g_ += s.J.transpose() * s.d;
     dd_ += s.d.squaredNorm();
   }
-  double squared() const { return std::max(0.0, dd_ - g_.dot(dense::Ldlt(G_).solve(g_))); }
+  /// The second where it follows best.
+  struct Nearest {
+    Eigen::MatrixXd covariance;
+    Eigen::VectorXd p;
+    double squared;
+  };
+  Nearest nearest() const {
+    const dense::Ldlt of(G_);
+    Eigen::VectorXd p = of.solve(g_);
+    const double squared = std::max(0.0, dd_ - g_.dot(p));
+    return {of.inverse(), std::move(p), squared};
+  }
+  /// With one site more: what is left of its difference, over what the second's freedom adds to the noise.
+  static double squared_with(const Nearest& so_far, const Site& s) {
+    const Eigen::VectorXd left = s.d - s.J * so_far.p;
+    const Eigen::MatrixXd JC = s.J * so_far.covariance;
+    const Eigen::MatrixXd spread = Eigen::MatrixXd::Identity(left.size(), left.size()) + JC * s.J.transpose();
+    return so_far.squared + left.dot(dense::Ldlt(spread).solve(left));
+  }
 
  private:
   const ShotModel& model_;
@@ -178,13 +196,18 @@ class Contest {
   }
   double squared() const {
     double least = kInfinity;
-    for (const Separation& e : each_) least = std::min(least, e.squared());
+    for (const Separation& e : each_) least = std::min(least, e.nearest().squared);
     return least;
   }
-  double squared_with(const Site& s) const {
-    Contest more = *this;
-    more.add(s);
-    return more.squared();
+  /// Each with one of these more.
+  std::vector<double> squared_with(const std::vector<std::pair<std::size_t, Site>>& sites) const {
+    std::vector<double> least(sites.size(), kInfinity);
+    for (std::size_t k = 0; k < each_.size(); ++k) {
+      const Separation::Nearest so_far = each_[k].nearest();
+      for (std::size_t i = 0; i < sites.size(); ++i)
+        least[i] = std::min(least[i], Separation::squared_with(so_far, sites[i].second[k]));
+    }
+    return least;
   }
 
  private:
@@ -292,10 +315,10 @@ NextExperiment design(const ShotCase& c, const Problem& problem, const ShotModel
       }
     std::vector<std::size_t> more;
     while (apart.squared() < wanted && more.size() < most && !possible.empty()) {
-      const auto& best =
-          *std::ranges::max_element(possible, {}, [&](const auto& p) { return apart.squared_with(p.second); });
-      apart.add(best.second);
-      more.push_back(best.first);
+      const std::vector<double> then = apart.squared_with(possible);
+      const auto& [best, of_best] = possible[std::size_t(std::ranges::max_element(then) - then.begin())];
+      apart.add(of_best);
+      more.push_back(best);
     }
     const double after = std::sqrt(apart.squared());
     if (after < needed) {
