@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "golf/dense.hpp"
 #include "loop/deviation.hpp"
+#include "loop/shots/separation.hpp"
 #include "solvers/random.hpp"
 
 namespace hosel::loop {
@@ -115,65 +115,25 @@ std::vector<Fit> family(const Problem& problem, const Fit& as_fitted, const std:
   return all;
 }
 
-/// How far one set of effects is from another over some shots, in noise units, the second free to follow the first.
-class Separation {
- public:
-  Separation(const ShotModel& model, const Fit& truth, const Fit& rival, const Eigen::VectorXd& noise)
-      : model_(model),
-        truth_(truth),
-        rival_(rival),
-        noise_(noise),
-        G_(1e-6 * Eigen::MatrixXd::Identity(rival.size(), rival.size())),
-        g_(Eigen::VectorXd::Zero(rival.size())) {}
+/// One set of effects as the truth, another that may follow it.
+struct Following {
+  const ShotModel& model;
+  const Fit &truth, &rival;
+  const Eigen::VectorXd& noise;
+  Separation apart{rival.size()};
 
-  struct Site {
-    Eigen::VectorXd d;  ///< difference of the rivals
-    Eigen::MatrixXd J;  ///< of the second by its parameters
-  };
   /// False where the blow cannot happen.
-  bool look(const Shot& t, int shot, Site& out) const {
-    const int m = model_.width();
+  bool look(const Shot& t, int shot, Separation::Site& out) const {
+    const int m = model.width();
     Eigen::VectorXd one(m), two(m);
-    out.J.resize(m, rival_.size());
-    if (!model_.predict(t, shot, truth_.model, truth_.p.data(), one.data()) ||
-        !model_.differences(t, shot, rival_.model, rival_.p.data(), true, two.data(), out.J.data()))
+    out.J.resize(m, rival.size());
+    if (!model.predict(t, shot, truth.model, truth.p.data(), one.data()) ||
+        !model.differences(t, shot, rival.model, rival.p.data(), true, two.data(), out.J.data()))
       return false;
-    out.d = (one - two).cwiseQuotient(noise_);
-    out.J = noise_.cwiseInverse().asDiagonal() * out.J;
+    out.d = (one - two).cwiseQuotient(noise);
+    out.J = noise.cwiseInverse().asDiagonal() * out.J;
     return true;
   }
-  void add(const Site& s) {
-    G_ += s.J.transpose() * s.J;
-    g_ += s.J.transpose() * s.d;
-    dd_ += s.d.squaredNorm();
-  }
-  /// The second where it follows best.
-  struct Nearest {
-    Eigen::MatrixXd covariance;
-    Eigen::VectorXd p;
-    double squared;
-  };
-  Nearest nearest() const {
-    const dense::Ldlt of(G_);
-    Eigen::VectorXd p = of.solve(g_);
-    const double squared = std::max(0.0, dd_ - g_.dot(p));
-    return {of.inverse(), std::move(p), squared};
-  }
-  /// With one site more: what is left of its difference, over what the second's freedom adds to the noise.
-  static double squared_with(const Nearest& so_far, const Site& s) {
-    const Eigen::VectorXd left = s.d - s.J * so_far.p;
-    const Eigen::MatrixXd JC = s.J * so_far.covariance;
-    const Eigen::MatrixXd spread = Eigen::MatrixXd::Identity(left.size(), left.size()) + JC * s.J.transpose();
-    return so_far.squared + left.dot(dense::Ldlt(spread).solve(left));
-  }
-
- private:
-  const ShotModel& model_;
-  const Fit &truth_, &rival_;
-  const Eigen::VectorXd& noise_;
-  Eigen::MatrixXd G_;
-  Eigen::VectorXd g_;
-  double dd_ = 0;
 };
 
 /// Either of two rivals may be the truth and the other follow it in any of its forms: the nearest of these counts.
@@ -181,8 +141,8 @@ class Contest {
  public:
   Contest(const ShotModel& model, const std::vector<Fit>& one, const std::vector<Fit>& two,
           const Eigen::VectorXd& noise) {
-    for (const Fit& f : two) each_.emplace_back(model, one.front(), f, noise);
-    for (const Fit& f : one) each_.emplace_back(model, two.front(), f, noise);
+    for (const Fit& f : two) each_.push_back({model, one.front(), f, noise});
+    for (const Fit& f : one) each_.push_back({model, two.front(), f, noise});
   }
   using Site = std::vector<Separation::Site>;
   bool look(const Shot& t, int shot, Site& out) const {
@@ -192,26 +152,26 @@ class Contest {
     return true;
   }
   void add(const Site& s) {
-    for (std::size_t k = 0; k < each_.size(); ++k) each_[k].add(s[k]);
+    for (std::size_t k = 0; k < each_.size(); ++k) each_[k].apart.add(s[k]);
   }
   double squared() const {
     double least = kInfinity;
-    for (const Separation& e : each_) least = std::min(least, e.nearest().squared);
+    for (const Following& f : each_) least = std::min(least, f.apart.nearest().squared);
     return least;
   }
   /// Each with one of these more.
-  std::vector<double> squared_with(const std::vector<std::pair<std::size_t, Site>>& sites) const {
+  std::vector<double> squared_with_each(const std::vector<std::pair<std::size_t, Site>>& sites) const {
     std::vector<double> least(sites.size(), kInfinity);
     for (std::size_t k = 0; k < each_.size(); ++k) {
-      const Separation::Nearest so_far = each_[k].nearest();
+      const Separation::Nearest so_far = each_[k].apart.nearest();
       for (std::size_t i = 0; i < sites.size(); ++i)
-        least[i] = std::min(least[i], Separation::squared_with(so_far, sites[i].second[k]));
+        least[i] = std::min(least[i], squared_with(so_far, sites[i].second[k]));
     }
     return least;
   }
 
  private:
-  std::vector<Separation> each_;
+  std::vector<Following> each_;
 };
 
 /// Pairs of rivals and how far apart they will be: one by one, of more than three their names and the range.
@@ -315,7 +275,7 @@ NextExperiment design(const ShotCase& c, const Problem& problem, const ShotModel
       }
     std::vector<std::size_t> more;
     while (apart.squared() < wanted && more.size() < most && !possible.empty()) {
-      const std::vector<double> then = apart.squared_with(possible);
+      const std::vector<double> then = apart.squared_with_each(possible);
       const auto& [best, of_best] = possible[std::size_t(std::ranges::max_element(then) - then.begin())];
       apart.add(of_best);
       more.push_back(best);
