@@ -175,13 +175,14 @@ class LoopFlightJob final : public Job {
       if (what == "ends")
         for (const double x : {f.carry, f.side, f.apex, f.time}) cells.push_back(text(x));
       for (std::size_t c = 0; c < cells.size(); ++c) sheet.columns[c].push_back(cells[c]);
-      sheet.lines.push_back(sheet.lines.size());
+      sheet.lines.push_back(sheet.lines.size() + 2);
     }
     case_.shots = loop::read_shots(sheet, true);
-    const std::vector<std::size_t>& flights = case_.shots.line;  // of the rows that are left: copies are not
-    for (const std::size_t i : flights) {
-      case_.air.push_back(data.flights[i].path.air);
-      case_.deviations.push_back(data.flights[i].path.sd);
+    std::vector<const models::MeasuredPath*> flights;  // of the rows that are left: copies are not
+    for (const std::size_t line : case_.shots.line) {
+      flights.push_back(&data.flights[line - 2].path);
+      case_.air.push_back(flights.back()->air);
+      case_.deviations.push_back(flights.back()->sd);
     }
     if (what == "ends") return;
     case_.position_noise = data.model.noise;
@@ -198,7 +199,7 @@ class LoopFlightJob final : public Job {
     case_.positions = Eigen::MatrixXd::Constant(Eigen::Index(flights.size()), Eigen::Index(case_.points.size()),
                                                 std::numeric_limits<double>::quiet_NaN());
     for (std::size_t i = 0; i < flights.size(); ++i) {
-      const models::MeasuredPath& p = data.flights[flights[i]].path;
+      const models::MeasuredPath& p = *flights[i];
       for (std::size_t k = 0; k < p.times.size(); ++k)
         for (std::size_t j = 0; j < instants.size(); ++j)
           if (std::abs(p.times[k] - instants[j]) < 1e-6) {
