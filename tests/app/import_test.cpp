@@ -7,6 +7,7 @@
 #include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <ostream>
 
 #include "golf/units.hpp"
 #include "loop/shots/shots.hpp"
@@ -36,6 +37,7 @@ struct Expected {
   std::vector<std::string> columns;  ///< that shots.csv must have
   std::string said;                  ///< a part of what is printed
 };
+void PrintTo(const Expected& e, std::ostream* out) { *out << e.file; }
 
 class Monitors : public testing::TestWithParam<Expected> {};
 
@@ -277,6 +279,7 @@ struct Layout {
   std::map<std::string, std::vector<double>> columns;  ///< column of shots.csv; NaN: an empty cell
   std::vector<std::string> said;
 };
+void PrintTo(const Layout& l, std::ostream* out) { *out << l.name; }
 
 class Layouts : public testing::TestWithParam<Layout> {};
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <ostream>
 
 #include "app/output.hpp"
 #include "command.hpp"
@@ -20,6 +21,7 @@ struct Malformed {
   const char* key;   // what it must name
   const char* hint;  // and what it must say
 };
+void PrintTo(const Malformed& m, std::ostream* out) { *out << m.name; }
 
 class MalformedCase : public testing::TestWithParam<Malformed> {};
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <ostream>
 #include <random>
 
 #include "app/output.hpp"
@@ -27,6 +28,7 @@ struct Nonsense {
   const char* says;  ///< part of the one line of the error
   int status = 2;
 };
+void PrintTo(const Nonsense& n, std::ostream* out) { *out << n.name; }
 
 class Implausible : public testing::TestWithParam<Nonsense> {};
 

@@ -49,6 +49,7 @@ struct Bad {
   const char* to;    // ... and what stands there instead
   const char* hint;  // what the line must say
 };
+void PrintTo(const Bad& b, std::ostream* out) { *out << b.name; }
 
 class BadSwing : public testing::TestWithParam<Bad> {};
 

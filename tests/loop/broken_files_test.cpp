@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <functional>
 #include <nlohmann/json.hpp>
+#include <ostream>
 
 #include "tests/app/command.hpp"
 
@@ -39,6 +40,7 @@ struct Broken {
   const char* verdict;  ///< nullptr: one line on the file in place of a report
   const char* says;     ///< part of that line, or of the report
 };
+void PrintTo(const Broken& b, std::ostream* out) { *out << b.name; }
 
 class BrokenFile : public testing::TestWithParam<Broken> {};
 

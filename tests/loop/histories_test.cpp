@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <ostream>
 #include <random>
 #include <set>
 
@@ -146,6 +147,7 @@ struct HiddenInRecords {
   Truth truth;
   double value, tolerance;  ///< printed unit
 };
+void PrintTo(const HiddenInRecords& h, std::ostream* out) { *out << h.effect << ' ' << h.value; }
 
 class HistoriesName : public testing::TestWithParam<HiddenInRecords> {};
 

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <ostream>
 
 #include "fem/materials/linear_elastic.hpp"
 #include "tests/support/elastic_sphere.hpp"
@@ -30,6 +31,7 @@ struct Rebound {
   double before, after;
   double grip;  ///< at least this much of the largest pull comes back as a push
 };
+void PrintTo(const Rebound& r, std::ostream* out) { *out << r.before; }
 
 class ObliqueSphere : public testing::TestWithParam<Rebound> {};
 

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <ostream>
 
 #include "golf/first_contact.hpp"
 #include "golf/units.hpp"
@@ -46,6 +47,7 @@ struct Row {
   double speed, attack, path, face, loft, toe, high;
   std::array<double, 6> expected;  // m/s, deg, deg, rpm, rpm, rpm
 };
+void PrintTo(const Row& r, std::ostream* out) { *out << r.head << ' ' << r.toe << ' ' << r.high; }
 
 class Eccentric : public testing::TestWithParam<Row> {};
 
@@ -88,6 +90,7 @@ struct ClubRow {
   const char* club;
   double mass, mph, attack, loft, spin, launch, speed_mph;
 };
+void PrintTo(const ClubRow& c, std::ostream* out) { *out << c.club; }
 class SevenIrons : public testing::TestWithParam<ClubRow> {};
 
 TEST_P(SevenIrons, BenchmarkTable) {

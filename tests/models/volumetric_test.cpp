@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <ostream>
 
 #include "golf/face_library.hpp"
 #include "golf/units.hpp"
@@ -57,6 +58,7 @@ struct VolumetricRow {
   const char* head;
   double mass, speed, e, milliseconds, kilonewtons, millimetres;
 };
+void PrintTo(const VolumetricRow& r, std::ostream* out) { *out << r.head << ' ' << r.speed; }
 class Published : public testing::TestWithParam<VolumetricRow> {};
 
 TEST_P(Published, RestitutionTimeForceDepth) {

@@ -1,6 +1,8 @@
 // [@moving-beams], [@waves] and [@integrators]: flexible beams in motion.
 #include <gtest/gtest.h>
 
+#include <ostream>
+
 #include <Eigen/LU>
 
 #include "fem/rigid_body.hpp"
@@ -420,6 +422,7 @@ struct StruckBar {
   double ratio;          ///< mass of the bar over that of the body
   double held, parting;  ///< largest force at the clamp over rho A c V; end of contact times c / L
 };
+void PrintTo(const StruckBar& s, std::ostream* out) { *out << s.ratio; }
 class SaintVenant : public testing::TestWithParam<StruckBar> {};
 
 TEST_P(SaintVenant, RigidBodyOnAClampedBar) {

@@ -3,6 +3,8 @@
 // motion is compared with the modal solution (linear, exact).
 #include <gtest/gtest.h>
 
+#include <ostream>
+
 #include "solvers/generalized_alpha.hpp"
 #include "tests/support/beams.hpp"
 
@@ -13,6 +15,7 @@ struct Blow {
   double dy, vz;        // m, m/s
   Vec3 attached, free;  // rad/s
 };
+void PrintTo(const Blow& b, std::ostream* out) { *out << b.dy; }
 
 class HeadImpulse : public testing::TestWithParam<Blow> {};
 
