@@ -222,9 +222,10 @@ std::string beside_noise(const LoopResult& r) {
   for (const ChannelResult& c : r.channels)
     if (c.expected > 0 && std::isfinite(c.after.holdout_rmse) && (!worst || ratio(c) > ratio(*worst))) worst = &c;
   if (!worst) return "";
-  // The root mean square of few values is beyond that by chance.
+  // The root mean square of few values is beyond that by chance, the worst of many channels sooner.
+  const double p = kTold / (2 * double(r.channels.size()));
   const double chance =
-      std::sqrt(quantile(boost::math::chi_squared(worst->after.holdout), 1 - kTold / 2) / worst->after.holdout);
+      std::sqrt(quantile(boost::math::chi_squared(worst->after.holdout), 1 - p) / worst->after.holdout);
   if (ratio(*worst) <= std::max(Rules{}.scatter_ratio, chance)) return " The held-out error is within the noise.";
   const SplitName name = split_unit(worst->name);
   const std::string unit = name.unit ? " " + post::symbol(name.unit->suffix) : "";

@@ -48,9 +48,9 @@ struct Means {
 };
 
 /// Of what whitened residuals `z` (width x rows) say of a quantity with derivatives `j`, per scale; `w` weights the
-/// rows.
+/// rows. Of groups of at least `fewest` shots.
 Means means(const Eigen::MatrixXd& z, const Eigen::MatrixXd& j, const Eigen::VectorXd& w, const std::vector<int>& group,
-            int groups) {
+            int groups, int fewest) {
   struct Sums {
     double precision = 0, pull = 0, square = 0;
     int shots = 0;
@@ -67,7 +67,7 @@ Means means(const Eigen::MatrixXd& z, const Eigen::MatrixXd& j, const Eigen::Vec
   Means out;
   double square = 0;
   for (const Sums& s : of) {
-    if (s.shots < kFewest) continue;
+    if (s.shots < fewest) continue;
     out.mean.push_back(s.pull / s.precision);
     out.variance.push_back(1 / s.precision);
     square += s.square;
@@ -122,8 +122,9 @@ class SharedErrors {
     for (Eigen::Index c = 0; c < width; ++c) {
       Eigen::MatrixXd one = Eigen::MatrixXd::Zero(width, z.cols());
       one.row(c) = seen_.row(c);
-      const Means m = means(z, one, w_, grouping_.of, grouping_.groups);
-      if (m.mean.size() < kFewestGroups || !(m.variance.front() > 0)) return variance_;
+      // The scatter is pooled over groups: two shots of one tell of it.
+      const Means m = means(z, one, w_, grouping_.of, grouping_.groups, 2);
+      if (m.mean.size() < kFewestGroups || !(m.variance.front() > 0)) continue;  // too few have this reading
       const auto own = double(m.mean.size() - 1);
       // Few groups say little of it: at the upper end of one standard error.
       const double low = quantile(boost::math::fisher_f(own, m.rest), 0.16);
@@ -132,7 +133,7 @@ class SharedErrors {
       freedom += own;
       rest += m.rest;
     }
-    p = cdf(complement(boost::math::fisher_f(freedom, rest), sum / freedom));
+    if (freedom > 0) p = cdf(complement(boost::math::fisher_f(freedom, rest), sum / freedom));
     return variance_;
   }
 
@@ -193,7 +194,7 @@ std::vector<GroupSpread> between_groups(const ShotModel& model, const Shots& sho
     const std::optional<Unit> of = split_unit(way.column).unit;
     const double unit = way.form.parameters.front().scale / (of ? of->si : 1);
     for (const Grouping& g : groupings) {
-      const Means m = means(z, j, w, g.of, g.groups);
+      const Means m = means(z, j, w, g.of, g.groups, kFewest);
       if (m.mean.size() < 2 || !(m.variance.front() > 0)) continue;
       const auto freedom = double(m.mean.size() - 1);
       const boost::math::fisher_f chance(freedom, m.rest);

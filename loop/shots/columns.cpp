@@ -282,21 +282,22 @@ void Columns::estimate_noise() {
   input_noise_ = Eigen::VectorXd::Zero(std::ptrdiff_t(inputs_.size()));
   for (std::size_t k = 0; k < inputs_.size(); ++k) {
     const auto it = case_.input_noise.find(columns_[k]->name);
-    if (it != case_.input_noise.end()) input_noise_[std::ptrdiff_t(k)] = it->second * columns_[k]->si;
+    if (it != case_.input_noise.end()) input_noise_[std::ptrdiff_t(k)] = error_of(*columns_[k], it->second);
   }
   std::vector<int> all(rows_.size());
   std::iota(all.begin(), all.end(), 0);
   Eigen::MatrixXd r = residuals(values_, {}, {});
   for (std::ptrdiff_t c = 0; c < m; ++c) {
+    const auto read = values_.col(std::ptrdiff_t(inputs_.size()) + c).array();
+    r.col(c) = read.isFinite().select(r.col(c), kNaN);  // what was not read has no scatter
     const Column& column = *columns_[inputs_.size() + std::size_t(c)];
     const double rounding = rounding_deviation(column.resolution);
     if (const auto it = case_.noise.find(column.name); it != case_.noise.end())
       noise_[c] = std::hypot(it->second * column.si, rounding);
     else noise_[c] = std::max(smooth_scatter(*model_, all, int(c), r), rounding);
     std::vector<double> size;
-    for (Eigen::Index i = 0; i < values_.rows(); ++i)
-      if (const double y = values_(i, std::ptrdiff_t(inputs_.size()) + c); std::isfinite(y))
-        size.push_back(std::abs(y));
+    for (const double y : read)
+      if (std::isfinite(y)) size.push_back(std::abs(y));
     noise_[c] = std::max(noise_[c], 1e-6 * median(size) + 1e-12);
   }
 }

@@ -119,19 +119,18 @@ std::vector<Fit> family(const Problem& problem, const Fit& as_fitted, const std:
 struct Following {
   const ShotModel& model;
   const Fit &truth, &rival;
-  const Eigen::VectorXd& noise;
   Separation apart{rival.size()};
 
-  /// False where the blow cannot happen.
-  bool look(const Shot& t, int shot, Separation::Site& out) const {
+  /// `whitening`: of that shot. False where the blow cannot happen.
+  bool look(const Shot& t, int shot, const Eigen::MatrixXd& whitening, Separation::Site& out) const {
     const int m = model.width();
     Eigen::VectorXd one(m), two(m);
     out.J.resize(m, rival.size());
     if (!model.predict(t, shot, truth.model, truth.p.data(), one.data()) ||
         !model.differences(t, shot, rival.model, rival.p.data(), true, two.data(), out.J.data()))
       return false;
-    out.d = (one - two).cwiseQuotient(noise);
-    out.J = noise.cwiseInverse().asDiagonal() * out.J;
+    out.d = whitening * (one - two);
+    out.J = (whitening * out.J).eval();
     return true;
   }
 };
@@ -139,16 +138,15 @@ struct Following {
 /// Either of two rivals may be the truth and the other follow it in any of its forms: the nearest of these counts.
 class Contest {
  public:
-  Contest(const ShotModel& model, const std::vector<Fit>& one, const std::vector<Fit>& two,
-          const Eigen::VectorXd& noise) {
-    for (const Fit& f : two) each_.push_back({model, one.front(), f, noise});
-    for (const Fit& f : one) each_.push_back({model, two.front(), f, noise});
+  Contest(const ShotModel& model, const std::vector<Fit>& one, const std::vector<Fit>& two) {
+    for (const Fit& f : two) each_.push_back({model, one.front(), f});
+    for (const Fit& f : one) each_.push_back({model, two.front(), f});
   }
   using Site = std::vector<Separation::Site>;
-  bool look(const Shot& t, int shot, Site& out) const {
+  bool look(const Shot& t, int shot, const Eigen::MatrixXd& whitening, Site& out) const {
     out.resize(each_.size());
     for (std::size_t k = 0; k < each_.size(); ++k)
-      if (!each_[k].look(t, shot, out[k])) return false;
+      if (!each_[k].look(t, shot, whitening, out[k])) return false;
     return true;
   }
   void add(const Site& s) {
@@ -242,12 +240,8 @@ NextExperiment design(const ShotCase& c, const Problem& problem, const ShotModel
   NextExperiment next;
   const Box box(c.shots, model, rows);
   const std::vector<Shot> sites = box.sites(model.trial(rows[rows.size() / 2]));
-  Eigen::VectorXd noise(model.width());
-  for (int ch = 0; ch < noise.size(); ++ch) {
-    double sum = 0;
-    for (const int i : rows) sum += model.sigma(i, ch) * std::sqrt(model.count(i));  // of a single shot
-    noise[ch] = sum / double(rows.size());
-  }
+  // The same share of the shots to come is held out.
+  const Eigen::MatrixXd of_one = std::sqrt(1 - c.split.holdout_fraction) * whitening_of_one(model, rows);
   // Aimed a little higher on training rows to come than is needed, since the plan itself rests on fits.
   constexpr double needed = 4.8, wanted = 5.5 * 5.5;
   std::size_t single = 0;
@@ -260,15 +254,14 @@ NextExperiment design(const ShotCase& c, const Problem& problem, const ShotModel
   for (const Rivals& r : rivals(so_far)) {
     const std::vector<Fit> one = family(problem, r.a->fit, r.one, so_far.forms),
                            two = family(problem, r.b->fit, r.two, so_far.forms);
-    Contest apart(model, one, two, noise);
+    Contest apart(model, one, two);
     Contest::Site site;
     for (const int i : rows)
-      if (apart.look(model.trial(i), i, site))
-        for (int k = 0; k < model.count(i); ++k) apart.add(site);
+      if (apart.look(model.trial(i), i, model.whitening(i), site)) apart.add(site);
     const double before = std::sqrt(apart.squared());
     std::vector<std::pair<std::size_t, Contest::Site>> possible;
     for (std::size_t k = 0; k < sites.size(); ++k)
-      if (apart.look(sites[k], -1, site)) {
+      if (apart.look(sites[k], -1, of_one, site)) {
         for (const std::size_t known : chosen)
           if (known == k) apart.add(site);
         possible.emplace_back(k, site);

@@ -45,6 +45,10 @@ std::vector<double> session_order(const Shots& shots, const std::vector<int>& ro
   return place;
 }
 
+double error_of(const Column& input, double declared) {
+  return declared > 0 ? std::hypot(declared * input.si, rounding_deviation(input.resolution)) : 0;
+}
+
 Inputs make_inputs(const Shots& shots, const Blow& blow, bool head_mass_declared,
                    const std::map<std::string, double>& noise, bool loft_unknown) {
   Inputs in;
@@ -131,7 +135,7 @@ Inputs make_inputs(const Shots& shots, const Blow& blow, bool head_mass_declared
     for (const double v : x)
       if (std::abs(v - mid) <= fence) square += (v - sum / count) * (v - sum / count);
     spread[k] = count > 1 ? std::sqrt(square / (count - 1)) : 0;
-    if (const auto it = noise.find(c->name); it != noise.end()) sigma[k] = it->second * c->si;
+    if (const auto it = noise.find(c->name); it != noise.end()) sigma[k] = error_of(*c, it->second);
     for (std::size_t i = 0; i < n; ++i)
       if (std::isnan(c->value[in.row_of[i]]) && k != int(Input::head_mass)) ++filled[k];
     any = any || sigma[k] > 0 || filled[k] > 0;

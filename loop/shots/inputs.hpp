@@ -27,6 +27,9 @@ struct Inputs {
 /// Place of some rows in the session, 0 the first, 1 the last: by the shot number where it is one, else by the row.
 std::vector<double> session_order(const Shots& shots, const std::vector<int>& rows);
 
+/// Of a recorded input [SI] whose error is declared [header's unit]: its last digit rounds besides. Zero: it is exact.
+double error_of(const Column& input, double declared);
+
 /// Rows without club speed, dynamic loft or any output are unused; a missing column is zero. `noise` by header,
 /// header's unit. Regression calibration: x* = mean + S_true (S_true + S_noise)^-1 (x - mean) over what the row holds,
 /// with robust moments: for an input that is missing there too. `loft_unknown`: the recorded loft is not looked at; a

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
+#include <utility>
 
 #include "golf/dense.hpp"
 #include "loop/rules.hpp"
@@ -98,22 +100,35 @@ Mixture two_populations(const Eigen::VectorXd& y) {
 }  // namespace
 
 std::optional<Mixture> mixture(const Eigen::MatrixXd& z) {
-  const Eigen::Index n = z.rows(), m = z.cols();
-  if (n < kFewestToPart) return {};
-  // The principal direction of the bulk: what is far off is drawn in.
-  const Eigen::MatrixXd bulk = z.cwiseMax(-12.0).cwiseMin(12.0);
-  const Eigen::MatrixXd centred = bulk.rowwise() - bulk.colwise().mean();
-  std::vector<Eigen::VectorXd> directions{dense::eigenpairs(centred.transpose() * centred).vectors.col(m - 1)};
-  for (Eigen::Index c = 0; c < m; ++c) directions.push_back(Eigen::VectorXd::Unit(m, c));
+  const Eigen::Index m = z.cols();
+  // What is far off is drawn in.
+  const Eigen::MatrixXd bulk = z.unaryExpr([](double x) { return std::isnan(x) ? x : std::clamp(x, -12.0, 12.0); });
+  const auto rows_with = [&](Eigen::Index first, Eigen::Index channels) {
+    std::vector<int> rows;
+    for (Eigen::Index i = 0; i < bulk.rows(); ++i)
+      if (!bulk.row(i).segment(first, channels).hasNaN()) rows.push_back(int(i));
+    return rows;
+  };
   std::optional<Mixture> best;
-  for (const Eigen::VectorXd& d : directions) {
-    const Eigen::VectorXd y = bulk * d;
+  const auto look = [&](std::vector<int> rows, const Eigen::VectorXd& y) {
     Mixture two = two_populations(y);
-    if (std::min(two.share, 1 - two.share) < kLeastShare || two.apart < kLeastApart) continue;
-    if (2 * (two.gain - flat_population(y)) < Rules{}.tie) continue;
+    if (std::min(two.share, 1 - two.share) < kLeastShare || two.apart < kLeastApart) return;
+    if (2 * (two.gain - flat_population(y)) < Rules{}.tie) return;
     two.gain = 2 * (two.gain - one_population(y));
+    two.rows = std::move(rows);
     if (!best || two.gain > best->gain) best = std::move(two);
+  };
+  std::vector<int> complete = rows_with(0, m);
+  if (std::ssize(complete) >= kFewestToPart) {  // along the principal direction of the bulk
+    const Eigen::MatrixXd all = bulk(complete, Eigen::all), centred = all.rowwise() - all.colwise().mean();
+    const Eigen::VectorXd y = all * dense::eigenpairs(centred.transpose() * centred).vectors.col(m - 1);
+    look(std::move(complete), y);
   }
+  for (Eigen::Index c = 0; c < m; ++c)
+    if (std::vector<int> rows = rows_with(c, 1); std::ssize(rows) >= kFewestToPart) {
+      const Eigen::VectorXd y = bulk(rows, c);
+      look(std::move(rows), y);
+    }
   return best;
 }
 
@@ -180,6 +195,8 @@ std::optional<Mixture> mixture(const Eigen::MatrixXd& first, const Residuals& se
   if (out.apart < kLeastApart) return {};
   out.deviation = std::sqrt(scatter.square().mean());
   out.gain = 2 * (log_likelihood - one) - Rules{}.parameter_cost * double(size);
+  out.rows.resize(std::size_t(n));
+  std::iota(out.rows.begin(), out.rows.end(), 0);
   out.second = likelier(in);
   return out;
 }

@@ -13,15 +13,18 @@ struct Mixture {
   double share = 0;          ///< of the second
   double apart = 0;          ///< their distance in standard deviations of either
   double deviation = 0;      ///< of either
-  std::vector<char> second;  ///< rows that belong to it rather than to the first
+  std::vector<int> rows;     ///< that were looked at
+  std::vector<char> second;  ///< of these: whether it belongs to the second rather than to the first
 };
 
 /// Looks along every column of `z` and along its principal direction for two normal populations of the same scatter,
 /// against one normal or Student population: the likelihood ratio, its largest. `z`: standardised residuals, rows x
-/// channels. Nothing where a share is below an eighth or the two are not apart.
+/// channels, NaN where nothing was read: such a row is left out along what it lacks. Nothing where a share is below an
+/// eighth or the two are not apart.
 std::optional<Mixture> mixture(const Eigen::MatrixXd& z);
 
-/// Standardised residuals, rows x channels, where an effect has that size; false where a blow cannot happen.
+/// Standardised residuals, rows x channels, all finite, where an effect has that size; false where a blow cannot
+/// happen.
 using Residuals = std::function<bool(const Eigen::VectorXd& size, Eigen::MatrixXd& z)>;
 /// Largest log-likelihood of one population: normal with a scatter per column, or Student.
 double one_population(const Eigen::MatrixXd& z);

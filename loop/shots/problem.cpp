@@ -495,13 +495,18 @@ std::optional<Location> ShotProblem::two_populations(const Selection& s) const {
       if (channel(c).refuted) model.channel(c).noise = *channel(c).declared;
     model.set_covariance(inputs_.covariance, s.chosen.model, s.chosen.p.data());
   }
-  const auto seen = [&](const Model& with, const Eigen::VectorXd& p) -> Eigen::MatrixXd {
-    const Eigen::VectorXd whitened = model.whitened(rows, with, p);
-    return whitened.reshaped<Eigen::RowMajor>(std::ptrdiff_t(rows.size()), std::ptrdiff_t(width()));
+  // What was not read is of no population.
+  const auto seen = [&](const std::vector<int>& of, const Model& with, const Eigen::VectorXd& p) -> Eigen::MatrixXd {
+    Eigen::MatrixXd z = model.whitened(of, with, p).reshaped<Eigen::RowMajor>(std::ptrdiff_t(of.size()), width());
+    for (Eigen::Index i = 0; i < z.rows(); ++i)
+      for (int c = 0; c < width(); ++c)
+        if (!model.observed(of[std::size_t(i)], c)) z(i, c) = kNaN;
+    return z;
   };
   std::optional<Mixture> best;
-  std::string by;  // the effect that parts them, where it is one
-  const Eigen::MatrixXd chosen = seen(s.chosen.model, s.chosen.p), base = seen(s.base.model, s.base.p);
+  std::string by;                         // the effect that parts them, where it is one
+  const std::vector<int>* among = &rows;  // its rows count in these
+  const Eigen::MatrixXd chosen = seen(rows, s.chosen.model, s.chosen.p), base = seen(rows, s.base.model, s.base.p);
   // The chosen one is wrong, or fits with more noise than there is: it may have drawn the two together.
   const bool doubtful = !s.clean || refuted;
   for (const Eigen::MatrixXd* z : {&chosen, &base}) {
@@ -513,35 +518,42 @@ std::optional<Location> ShotProblem::two_populations(const Selection& s) const {
   }
   if (best && best->gain < (as_declared(*best) ? case_.rules.gain / 2 : kMixture)) best.reset();
   // The same, where the second population has an effect that does not move every shot alike.
-  if (!best && (doubtful || (s.level > 0 && !declared))) {
-    const double one = std::max(one_population(chosen), one_population(base));
+  std::vector<int> complete;
+  for (const int i : rows)
+    if (model.observed(i) == width()) complete.push_back(i);
+  if (!best && !complete.empty() && (doubtful || (s.level > 0 && !declared))) {
+    const auto of_complete = [&](const Model& with, const Eigen::VectorXd& p) { return seen(complete, with, p); };
+    const Eigen::MatrixXd first = of_complete(s.base.model, s.base.p);
+    const double one = std::max(one_population(of_complete(s.chosen.model, s.chosen.p)), one_population(first));
     for (const Parametrisation& f : forms()) {
       if (f.threshold || f.effect == "session-drift") continue;
-      for (const Mixture& two : parted_by(f, s.base, base, seen, one))
+      for (const Mixture& two : parted_by(f, s.base, first, of_complete, one))
         if (two.gain > kMixture && (!best || two.gain > best->gain) && (!declared || as_declared(two))) {
           best = two;
           by = f.effect;
+          among = &complete;
         }
     }
   }
   if (!best) return {};
-  Eigen::VectorXd difference = Eigen::VectorXd::Zero(width());
-  double count = 0;
-  for (std::size_t i = 0; i < rows.size(); ++i) count += best->second[i];
-  for (std::size_t i = 0; i < rows.size(); ++i)
-    difference += base.row(std::ptrdiff_t(i)).transpose() *
-                  (best->second[i] ? 1 / count : -1 / (double(rows.size()) - count));
-  Eigen::Index most = 0;
-  difference.cwiseAbs().maxCoeff(&most);
-  // In the channel's own unit, of the rows that have it.
-  const Eigen::MatrixXd raw = model_->residuals(s.base.model, s.base.p.data());
-  std::array<double, 2> sum{}, values{};
-  for (std::size_t i = 0; i < rows.size(); ++i)
-    if (const double x = raw(rows[i], most); std::isfinite(x)) {
-      sum[best->second[i]] += x;
-      values[best->second[i]] += 1;
-    }
-  const double by_channel = std::abs(sum[1] / values[1] - sum[0] / values[0]);
+  std::vector<int> shots;
+  for (const int i : best->rows) shots.push_back((*among)[std::size_t(i)]);
+  // Between the means of the two, of the rows that have it.
+  const auto difference = [&](const Eigen::MatrixXd& of, int c) {
+    std::array<double, 2> sum{}, values{};
+    for (std::size_t i = 0; i < shots.size(); ++i)
+      if (const double x = of(std::ptrdiff_t(i), c); std::isfinite(x)) {
+        sum[best->second[i]] += x;
+        values[best->second[i]] += 1;
+      }
+    return values[0] > 0 && values[1] > 0 ? std::abs(sum[1] / values[1] - sum[0] / values[0]) : 0.0;
+  };
+  const Eigen::MatrixXd z = seen(shots, s.base.model, s.base.p);
+  int most = 0;
+  for (int c = 1; c < width(); ++c)
+    if (difference(z, c) > difference(z, most)) most = c;
+  // In the channel's own unit.
+  const double by_channel = difference(model_->residuals(s.base.model, s.base.p.data())(shots, Eigen::all), most);
   std::string apart = "two balls, players or settings that no column tells apart";
   constexpr double alike = 0.9;
   for (const Column& c : case_.shots.columns) {
@@ -549,18 +561,18 @@ std::optional<Location> ShotProblem::two_populations(const Selection& s) const {
     const Groups g = groups(c);
     for (std::size_t k = 0; k < g.name.size(); ++k) {
       double same = 0;
-      for (std::size_t i = 0; i < rows.size(); ++i)
-        same += (g.of_row[inputs_.row_of[rows[i]]] == int(k)) == bool(best->second[i]);
-      if (std::max(same, double(rows.size()) - same) > alike * double(rows.size()))
+      for (std::size_t i = 0; i < shots.size(); ++i)
+        same += (g.of_row[inputs_.row_of[shots[i]]] == int(k)) == bool(best->second[i]);
+      if (std::max(same, double(shots.size()) - same) > alike * double(shots.size()))
         apart = fmt::format("nearly those of {} '{}', and the others", c.name, g.name[k]);
     }
   }
   return Location{
-      channel(int(most)).name, "",
+      channel(most).name, "",
       fmt::format(
           "a mixture of two populations, {:.0f} % of the shots {:.1f} standard deviations from the others, {:.3g} in "
           "{}{}: {}",
-          100 * best->share, best->apart, by_channel, channel(int(most)).name,
+          100 * best->share, best->apart, by_channel, channel(most).name,
           by.empty() ? "" : fmt::format(", as {} would move them", by), apart)};
 }
 

@@ -2,6 +2,9 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <vector>
+
+#include "loop/shots/model.hpp"
 
 namespace hosel::loop {
 
@@ -32,5 +35,9 @@ class Separation {
 
 /// `squared` with one site more: what is left of its difference, over what the second's freedom adds to the noise.
 double squared_with(const Separation::Nearest& so_far, const Separation::Site& s);
+
+/// Whitening (ShotModel::whitening) of a shot to come, which is read in all that these are and whose noise is the mean
+/// of theirs. Channels err together, as much as they share uncertain inputs.
+Eigen::MatrixXd whitening_of_one(const ShotModel& model, const std::vector<int>& shots);
 
 }  // namespace hosel::loop

@@ -9,11 +9,13 @@
 #include <fstream>
 #include <functional>
 #include <nlohmann/json.hpp>
+#include <numeric>
 #include <random>
 #include <set>
 #include <sstream>
 #include <tuple>
 
+#include "golf/dense.hpp"
 #include "golf/face_library.hpp"
 #include "golf/first_contact.hpp"
 #include "loop/effects/all.hpp"
@@ -22,6 +24,7 @@
 #include "loop/shots/inputs.hpp"
 #include "loop/shots/problem.hpp"
 #include "loop/shots/run.hpp"
+#include "loop/shots/separation.hpp"
 #include "loop/shots/slips.hpp"
 #include "loop/study.hpp"
 #include "loop/verdict.hpp"
@@ -825,6 +828,27 @@ std::string by_player(const World& w, const std::array<double, 3>& error) {
   });
 }
 
+/// Players of four shots each, next to one another in club speed, whose errors of the recorded ball speed [m/s] grow
+/// with it and scatter besides.
+std::string by_many(const World& w) {
+  std::vector<double> speed;
+  changed(csv(w), "", [&](int, auto& cells) { speed.push_back(std::stod(cells[kClubSpeed])); });
+  std::vector<int> slowest(speed.size()), who(speed.size());
+  std::iota(slowest.begin(), slowest.end(), 0);
+  std::ranges::sort(slowest, {}, [&](int i) { return speed[std::size_t(i)]; });
+  for (std::size_t rank = 0; rank < slowest.size(); ++rank) who[std::size_t(slowest[rank])] = int(rank / 4);
+  std::mt19937 random(11);
+  std::normal_distribution<double> gauss(0, 0.3);
+  std::vector<double> error(speed.size() / 4);
+  for (std::size_t g = 0; g < error.size(); ++g)
+    error[g] = gauss(random) + 0.8 * (double(g) / double(error.size()) - 0.5);
+  return changed(csv(w), ",player", [&](int i, std::vector<std::string>& cells) {
+    const int g = who[std::size_t(i)];
+    cells[kBallSpeed] = fmt::format("{:.2f}", std::stod(cells[kBallSpeed]) + error[std::size_t(g)]);
+    cells.push_back(fmt::format("P{}", g));
+  });
+}
+
 /// How far the fit of one effect falls, and what is left of that beside errors that groups share.
 struct Falls {
   double alone = 0;
@@ -864,6 +888,19 @@ TEST_F(Loop, WhatGroupsShareIsNoEvidenceOfAnEffect) {
   EXPECT_GT(missing.alone, 2 * Rules{}.gain);
   ASSERT_TRUE(missing.beside);
   EXPECT_LT(*missing.beside, Rules{}.gain);
+  // A reading that two of three players have hides no other's errors.
+  const std::string two = changed(by_player({.shots = 150}, {-0.4, 0, 0.4}), "", [](int, auto& cells) {
+    if (cells.back() == "P2") cells[kSidespin] = "";
+  });
+  const Falls sparse = falls(case_of(two), "restitution-law");
+  EXPECT_GT(sparse.alone, 2 * Rules{}.gain);
+  ASSERT_TRUE(sparse.beside);
+  EXPECT_LT(*sparse.beside, Rules{}.gain);
+  // Nor does it matter that the players are many and have four shots each.
+  const Falls many = falls(case_of(by_many({.shots = 144})), "restitution-law");
+  EXPECT_GT(many.alone, Rules{}.gain);
+  ASSERT_TRUE(many.beside);
+  EXPECT_LT(*many.beside, Rules{}.gain);
   // Spin says of the tangential restitution what shots of one player do; less of it is what players have in common.
   const Falls apart =
       falls(case_of(by_player({.shots = 150, .tangential = 0.05}, {0.4, -0.8, 0.4})), "ball-tangential-compliance");
@@ -1038,6 +1075,44 @@ TEST_F(Loop, AMissingInputIsInferredFromTheOthers) {
   }
 }
 
+TEST_F(Loop, AShotToComeErrsInItsChannelsTogether) {
+  ShotCase c = case_of(changed(csv({.shots = 60}), "", [](int i, auto& cells) {
+    if (i % 3 == 0) cells[kAzimuth] = "";
+  }));
+  c.input_noise = {{"dynamic_loft_deg", 0.8}};
+  const ShotProblem problem(c, {}, {}, {});
+  const ShotModel& model = problem.model();
+  std::vector<int> all(std::size_t(model.shots()));
+  std::iota(all.begin(), all.end(), 0);
+  const Eigen::MatrixXd W = whitening_of_one(model, all),
+                        covariance = dense::inverse(Eigen::MatrixXd(W.transpose() * W));
+  // An uncertain loft moves launch angle and backspin together: of independent channels it would be 0.
+  EXPECT_GT(covariance(1, 3) / std::sqrt(covariance(1, 1) * covariance(3, 3)), 0.5);
+  for (Eigen::Index a = 0; a < covariance.rows(); ++a) {
+    double sum = 0, count = 0;
+    for (const int i : all)
+      if (model.observed(i, int(a))) sum += std::pow(model.sigma(i, int(a)), 2), ++count;
+    EXPECT_NEAR(covariance(a, a), sum / count, 1e-9 * covariance(a, a)) << a;
+  }
+}
+
+TEST_F(Loop, ARecordWithAnErrorRoundsBesides) {
+  std::string text = "club_speed_mps,dynamic_loft_deg,ball_speed_mps\n";
+  std::mt19937 random(5);
+  std::normal_distribution<double> gauss;
+  for (int i = 0; i < 80; ++i) text += fmt::format("{:.2f},{:.0f},60\n", 45 + gauss(random), 14 + 3 * gauss(random));
+  const Shots table = shots(text);
+  const Blow blow = case_of(csv({})).blow;
+  const int k = int(Input::dynamic_loft);
+  const auto sd = [&](double declared) {
+    return degrees(std::sqrt(make_inputs(table, blow, true, {{"dynamic_loft_deg", declared}}).covariance.at(0)(k, k)));
+  };
+  // In whole degrees; 3 deg of spread tell a little of each: 1 / (1 / 0.39^2 + 1 / 3^2), rooted.
+  const double error = std::hypot(0.26, 1 / std::sqrt(12.0));
+  EXPECT_NEAR(sd(0.26), error / std::hypot(1, error / 3), 0.02);
+  EXPECT_TRUE(make_inputs(table, blow, true, {{"dynamic_loft_deg", 0}}).covariance.empty());  // exact, as declared
+}
+
 TEST_F(Loop, TwoNamesOfOneRestitutionAreATie) {
   // Livelier everywhere and less off the centre: a face that yields does that too.
   const LoopResult r = run(case_of(csv({.shots = 150, .level = 0.04, .bell = 0.05})));
@@ -1091,6 +1166,16 @@ TEST_F(Loop, AStepOfThePhysicsAccusesNoColumn) {
   ASSERT_EQ(misread.columns.size(), 1U) << sentence(misread);
   EXPECT_EQ(misread.columns[0].column, "club_speed_mps");
   EXPECT_EQ(misread.columns[0].finding, "level-shift");
+  // Spins that two shots in five have, their noise estimated: what is not there has no scatter.
+  ShotCase sparse = case_of(changed(csv({.shots = 120, .misread = 1.5}), "", [](int i, auto& cells) {
+    if (i % 5 > 1) cells[kBackspin] = cells[kSidespin] = "";
+  }));
+  sparse.noise.erase("backspin_rpm");
+  sparse.noise.erase("sidespin_rpm");
+  const LoopResult few_spins = run(sparse);
+  ASSERT_EQ(few_spins.columns.size(), 1U) << sentence(few_spins);
+  EXPECT_EQ(few_spins.columns[0].column, "club_speed_mps");
+  EXPECT_EQ(few_spins.columns[0].finding, "level-shift");
 }
 
 /// Balls of two inertias differ in launch angle and spin, as a loft that is read wrong for one of them does.

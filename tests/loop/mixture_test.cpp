@@ -5,6 +5,8 @@
 
 #include <random>
 
+#include "golf/units.hpp"
+
 namespace hosel::loop {
 namespace {
 
@@ -57,6 +59,29 @@ TEST(Mixture, AnEffectOfAllShotsOrOneOfManySizesIsNone) {
   EXPECT_FALSE(all && all->gain > 20);
   const auto growing = Made([](int i) { return 6.0 * i / kShots; }).parted();
   EXPECT_FALSE(growing && growing->gain > 20);
+}
+
+/// One population away from zero, or two: zeros in place of what was not read would be another.
+TEST(Mixture, WhatWasNotReadIsOfNoPopulation) {
+  std::mt19937 random(7);
+  std::normal_distribution<double> gauss;
+  Eigen::MatrixXd one(300, 2), two(300, 2);
+  for (Eigen::Index i = 0; i < one.rows(); ++i)
+    for (Eigen::Index c = 0; c < 2; ++c) {
+      one(i, c) = gauss(random) + (c == 0 ? 5 : 0);
+      two(i, c) = gauss(random) + (c == 0 && i % 2 ? 5 : 0);
+    }
+  for (Eigen::Index i = 0; i < one.rows(); i += 3) one(i, 0) = two(i, 0) = kNaN;
+  EXPECT_FALSE(mixture(one));
+  const auto parted = mixture(two);
+  ASSERT_TRUE(parted);
+  ASSERT_EQ(parted->rows.size(), 200U);
+  int right = 0;
+  for (std::size_t k = 0; k < parted->rows.size(); ++k) {
+    EXPECT_NE(parted->rows[k] % 3, 0);
+    right += bool(parted->second[k]) == (parted->rows[k] % 2 == 1);
+  }
+  EXPECT_GT(right, 190);  // five standard deviations apart: 1 % lie beyond the middle
 }
 
 TEST(Mixture, NoiseOfAFlatShapeIsOnePopulation) {
