@@ -189,6 +189,40 @@ struct Pairs {
   }
 };
 
+/// Inputs that count as exact, whose last digit makes most of what a channel scatters beyond its declared noise.
+std::string coarse_inputs(const ShotCase& c, const ShotModel& model, const std::vector<int>& rows, const Fit& fit) {
+  std::vector<std::string> told;
+  std::vector<double> as_recorded(std::size_t(model.width())), moved(as_recorded);
+  for (int k = 0; k < kInputs; ++k) {
+    const Column* input = c.shots.find_stem(stem(Input(k)));
+    if (!input || input->role != Role::input || c.input_noise.contains(input->name)) continue;
+    if (c.loft_unknown && Input(k) == Input::dynamic_loft) continue;
+    const double error = rounding_deviation(input->resolution);
+    std::vector<std::vector<double>> by(as_recorded.size());
+    for (const int i : rows) {
+      Shot t = model.trial(i);
+      set(t.blow, Input(k), get(t.blow, Input(k)) + error);
+      if (!model.predict(i, fit.model, fit.p.data(), as_recorded.data()) ||
+          !model.predict(t, i, fit.model, fit.p.data(), moved.data()))
+        continue;
+      for (std::size_t ch = 0; ch < by.size(); ++ch) by[ch].push_back(std::abs(moved[ch] - as_recorded[ch]));
+    }
+    std::vector<std::string> channels;
+    for (int ch = 0; ch < model.width(); ++ch) {
+      const ShotChannel& channel = model.channel(ch);
+      const std::vector<double>& each = by[std::size_t(ch)];
+      if (!channel.refuted || each.empty()) continue;
+      const double beyond = std::pow(channel.noise, 2) - std::pow(*channel.declared, 2), part = median(each);
+      if (2 * part * part > beyond) channels.push_back(fmt::format("{} by {:.2g}", channel.name, part));
+    }
+    if (!channels.empty())
+      told.push_back(fmt::format("[data.input_noise] {} = {:.2g}: its steps of {:.3g} move {}", input->name,
+                                 error / input->si, input->resolution / input->si, fmt::join(channels, ", ")));
+  }
+  return told.empty() ? ""
+                      : fmt::format("Declare what rounding does, then run the loop again: {}", fmt::join(told, "; "));
+}
+
 }  // namespace
 
 NextExperiment design(const ShotCase& c, const Problem& problem, const ShotModel& model, const std::vector<int>& rows,
@@ -230,7 +264,10 @@ NextExperiment design(const ShotCase& c, const Problem& problem, const ShotModel
     }
     case Verdict::insufficient:
       return {.text = "More shots of the same kind: the list of smallest effects says what these could have shown"};
-    case Verdict::noise_contradicted: return {.text = "Ten shots at one setting, to find the instrument's own scatter"};
+    case Verdict::noise_contradicted: {
+      const std::string rounding = coarse_inputs(c, model, rows, so_far.selection.chosen);
+      return {.text = rounding.empty() ? "Ten shots at one setting, to find the instrument's own scatter" : rounding};
+    }
     case Verdict::explained:
     case Verdict::no_residual:
       return {.text = "Nothing is tied. Shots at the edges of the recorded range would narrow the parameters most"};

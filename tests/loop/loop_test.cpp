@@ -1113,6 +1113,27 @@ TEST_F(Loop, ARecordWithAnErrorRoundsBesides) {
   EXPECT_TRUE(make_inputs(table, blow, true, {{"dynamic_loft_deg", 0}}).covariance.empty());  // exact, as declared
 }
 
+TEST_F(Loop, NoiseThatACoarseInputRefutesIsToldWithIt) {
+  ShotCase c = case_of(changed(csv({.shots = 120}), "", [](int, auto& cells) {
+    cells[kLoft] = fmt::format("{:.0f}", std::stod(cells[kLoft]));
+  }));
+  const LoopResult exact = run(c);
+  ASSERT_EQ(name(exact.verdict), "noise-contradicted") << sentence(exact);
+  EXPECT_NE(exact.next.text.find("dynamic_loft_deg = 0.29: its steps of 1 move launch_angle_deg by 0.2"),
+            std::string::npos)
+      << exact.next.text;
+  // With any error declared, the last digit's is part of it.
+  c.input_noise = {{"dynamic_loft_deg", 0.01}};
+  const LoopResult rounded = run(c);
+  EXPECT_EQ(name(rounded.verdict), "no-residual") << sentence(rounded);
+  // Noise that is too small by itself is no rounding.
+  ShotCase quiet = case_of(csv({.shots = 120}));
+  quiet.noise["launch_angle_deg"] = 0.1;
+  const LoopResult by_noise = run(quiet);
+  ASSERT_EQ(name(by_noise.verdict), "noise-contradicted") << sentence(by_noise);
+  EXPECT_EQ(by_noise.next.text.find("Ten shots"), 0U) << by_noise.next.text;
+}
+
 TEST_F(Loop, TwoNamesOfOneRestitutionAreATie) {
   // Livelier everywhere and less off the centre: a face that yields does that too.
   const LoopResult r = run(case_of(csv({.shots = 150, .level = 0.04, .bell = 0.05})));
