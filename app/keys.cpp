@@ -89,7 +89,8 @@ std::vector<Sample> samples() {
       {"swing-driver", {"joint={kind='hinge', axis=[0,1,0]}", "grip={drive='hands', " + springs + "}"}},
       {"swing-driver", {"grip={drive='forced', wrench='grip.csv'}", "joint={kind='spring', " + springs + "}"}},
       {"loop-bench", {"bench={start='impulse', impulse_N_s=[1,0,0], rotation_axis='droop'}", "grip={hold='clamped'}"}},
-      {"loop-bench", {"data.series='not-there/record.csv'", "sensors.lead_mid_mm.axis=lead"}},
+      {"loop-bench",
+       {"data.series='not-there/record.csv'", "sensors.lead_mid_mm.axis=lead", "sensors.lead_mid_mm.radius_mm=5"}},
       {"swing-driver", {"kind=identify-shaft", "swing=[{motion={file='grip.csv'}, deflection='grip.csv'}]"}},
   };
 }

@@ -160,12 +160,18 @@ fem::RimSupport read_rim(Table t, const fem::PlateMaterial& material) {
   }
   const Range some = Range::non_negative().or_infinite(), positive = Range::positive().or_infinite();
   const auto standard = [&](double x) { return shell ? std::optional(x) : std::nullopt; };
+  // The shell couples its own springs, and none that is stated.
+  const bool own = shell && !t.has_quantity("rotation") && !t.has_quantity("stretch");
   out.rotation =
       t.quantity({"rotation", "moment per length of rim and radian; inf: held"}, "N", some, standard(out.rotation));
   out.deflection = t.quantity({"deflection", "force across the face per length of rim and deflection; inf: held"},
                               "GPa", positive, standard(out.deflection));
   out.stretch =
       t.quantity({"stretch", "the same in the face's plane; inf: held"}, "GPa", positive, standard(out.stretch));
+  out.lean = t.number({"lean_per_m",
+                       "turn about the rim where no moment acts, per displacement in the face's plane; 0 where "
+                       "rotation or stretch is stated"},
+                      {-1e4, 1e4}, own ? out.lean : 0);
   return out;
 }
 

@@ -83,6 +83,11 @@ std::optional<Meaning> meaning(const std::string& name) {
 
 }  // namespace
 
+double read_gauge_radius(Table& place) {
+  return place.quantity({"radius", "of the strain gauge from the shaft's axis; none: the shaft's outer radius"}, "mm",
+                        {1e-3, 0.03});
+}
+
 Series read_series(const std::filesystem::path& file, Table* sensors, double tip, double clamp, std::size_t most,
                    std::vector<std::string>& notes) {
   const post::Sheet sheet = read_sheet(file);
@@ -130,11 +135,13 @@ Series read_series(const std::filesystem::path& file, Table* sensors, double tip
       place.decided_by("channel");
       channel.arc_length = place.quantity({"arc_length", "of the sensor from the butt"}, "mm", Range::non_negative(),
                                           channel.arc_length);
-      if (strain)
+      if (strain) {
         channel.reading = place.choice({"axis", "bending that the strain gauge feels"}, {"lead", "droop"},
                                        m->reading == loop::Reading::strain_droop ? "droop" : "lead") == "droop"
                               ? loop::Reading::strain_droop
                               : loop::Reading::strain_lead;
+        if (place.has_quantity("radius")) channel.radius = read_gauge_radius(place);
+      }
       if (channel.arc_length < clamp || channel.arc_length > tip + 1e-9)
         place.fail("arc_length", "the sensor is not on the free shaft");
     }

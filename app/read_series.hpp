@@ -17,6 +17,9 @@ struct Series {
   std::vector<loop::HistoryChannel> channels;
 };
 
+/// `radius` of a strain channel.
+double read_gauge_radius(Table& channel);
+
 /// Channels by the names of their columns: `lead_*`, `droop_*`, `shortening_*`, `twist_*`, `strain_*`, with any unit of
 /// length or angle, of its rate (mps, deg_per_s) or its acceleration (m_per_s2); strain is a plain number, or
 /// millionths as `_um_per_m`. `sensors` says where each is read and along which axis; without it motions are the

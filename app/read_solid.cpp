@@ -163,7 +163,9 @@ models::FeBall read_fe_ball(Table table, const models::FeBall& standard) {
     const Range factor{0.05, 20};
     models::FeChange c;
     c.cover_stiffness = std::log(t->number(
-        {"cover_moduli_factor", "on all moduli of the outermost layer; a ball of one piece gets a skin"}, factor, 1.0));
+        {"cover_moduli_factor",
+         "on the shear moduli (elastic and branches) of the outermost layer; a ball of one piece gets a skin"},
+        factor, 1.0));
     c.cover_thickness = t->quantity({"added_cover", "thickness added to the outermost layer"}, "mm", {-5e-3, 5e-3}, 0);
     c.losses = std::log(t->number({"branch_moduli_factor", "on the branch moduli of every layer"}, factor, 1.0));
     c.relaxation = std::log(t->number(

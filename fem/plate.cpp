@@ -53,14 +53,17 @@ std::vector<std::string> PlateMaterial::faults() const {
 }
 
 std::vector<std::string> RimSupport::faults() const {
-  if (deflection >= 0 && rotation >= 0 && stretch >= 0) return {};
-  return {"a rim's stiffness must not be negative"};
+  std::vector<std::string> out;
+  if (!(deflection >= 0 && rotation >= 0 && stretch >= 0)) out.emplace_back("a rim's stiffness must not be negative");
+  if (!std::isfinite(lean)) out.emplace_back("a rim's lean must be finite");
+  if (lean != 0 && std::isinf(rotation)) out.emplace_back("a rim that is held about itself must not lean");
+  return out;
 }
 
 RimSupport RimSupport::of_shell(const PlateMaterial& m, double thickness, double radius, double length) {
   const double rest = 1 - m.poisson * m.poisson, D = m.young * thickness * thickness * thickness / (12 * rest),
                b = std::pow(3 * rest, 0.25) / std::sqrt(radius * thickness);
-  return {.deflection = m.young * thickness / length, .rotation = 2 * D * b, .stretch = 2 * D * b * b * b};
+  return {.deflection = m.young * thickness / length, .rotation = 2 * D * b, .stretch = 2 * D * b * b * b, .lean = b};
 }
 
 double PlateStress::von_mises() const { return std::max(fem::von_mises(inner), fem::von_mises(outer)); }
@@ -217,7 +220,7 @@ void Plate::add_rim() {
         K += k * length * r * r.transpose();
       };
       spring(rim_.deflection, {1, 0, 0, 0, 0});
-      spring(rim_.rotation, {0, normal.x(), normal.y(), 0, 0});
+      spring(rim_.rotation, {0, normal.x(), normal.y(), -rim_.lean * normal.x(), -rim_.lean * normal.y()});
       if (!curved_) continue;
       spring(rim_.stretch, {0, 0, 0, 1, 0});
       spring(rim_.stretch, {0, 0, 0, 0, 1});

@@ -29,15 +29,17 @@ struct PlateMaterial {
   std::vector<std::string> faults() const;
 };
 
-/// What holds the rim, per length of it; infinite: held.
+/// What holds the rim, per length of it; infinite: held. With b the turn about the rim and u the displacement along its
+/// outward normal: energy 1/2 rotation (b - lean u)^2 + 1/2 stretch u^2.
 struct RimSupport {
   double deflection = std::numeric_limits<double>::infinity();  ///< across the plate [N/m2]
   double rotation = std::numeric_limits<double>::infinity();    ///< about the rim [N/rad]
   double stretch = std::numeric_limits<double>::infinity();     ///< in the plate's plane [N/m2]
+  double lean = 0;  ///< turn of an edge free of moment, per displacement along the rim's outward normal [rad/m]
   std::vector<std::string> faults() const;
   /// What a thin shell that leaves the rim at a right angle does to it: across the plate it is stretched over its
-  /// length, in the plate's plane and about the rim it bends as the edge of a long cylinder, 2 D b^3 and 2 D b with b^4
-  /// = 3 (1 - nu^2) / (radius thickness)^2 [@plates-and-shells].
+  /// length, in the plate's plane and about the rim it bends as the edge of a long cylinder: stretch 2 D b^3, rotation
+  /// 2 D b, lean b with b^4 = 3 (1 - nu^2) / (radius thickness)^2 [@plates-and-shells].
   static RimSupport of_shell(const PlateMaterial& material, double thickness, double radius, double length);
 };
 

@@ -29,7 +29,7 @@ struct ShaftStation {
   double mass_per_length = 0;      ///< [kg/m]
   double rotary_inertia_y = 0;     ///< rho I about local y [kg m]
   double rotary_inertia_z = 0;     ///< rho I about local z [kg m]
-  double outer_radius = 0;         ///< for looking [m]
+  double outer_radius = 0;         ///< mid-wall where a mean radius is declared; for strain and for looking [m]
   CentreOffsets centres = {};
 };
 

@@ -29,16 +29,18 @@ RobustRegression robust_regression(const Eigen::MatrixXd& given, const Eigen::Ve
   RobustRegression out;
   out.weights = Eigen::VectorXd::Ones(y.size());
   Eigen::VectorXd residual = y;
+  bool held = false;  // the scale: re-estimated in every round of the bisquare, it may go in circles
   const auto solve = [&] {
     const Eigen::VectorXd root = out.weights.cwiseSqrt();
     const dense::PivotedQr qr(root.asDiagonal() * X);
     if (qr.rank() < X.cols()) throw NonConvergence("regression: the inputs depend on each other");
     out.coefficients = qr.solve(Eigen::VectorXd(root.cwiseProduct(y)));
     residual = y - X * out.coefficients;
-    out.scale = 1.4826 * median_size(residual);
+    if (!held) out.scale = 1.4826 * median_size(residual);
   };
   solve();
   for (const bool bisquare : {false, true}) {
+    held = bisquare;
     constexpr int most = 500;
     int k = 0;
     for (; k < most && out.scale > 0; ++k) {
@@ -51,7 +53,8 @@ RobustRegression robust_regression(const Eigen::MatrixXd& given, const Eigen::Ve
       solve();
       if ((out.coefficients - before).norm() <= 1e-9 * out.coefficients.norm()) break;
     }
-    if (k == most) throw NonConvergence("regression: the weights do not settle");
+    // Huber's fit is a start only.
+    if (bisquare && k == most) throw NonConvergence("regression: the weights do not settle");
   }
   // Derivative of the bisquare's score: (1 - v^2) (1 - 5 v^2).
   Eigen::VectorXd slope = Eigen::VectorXd::Ones(y.size());
@@ -61,11 +64,17 @@ RobustRegression robust_regression(const Eigen::MatrixXd& given, const Eigen::Ve
       slope[i] = w < 1 ? (1 - w) * (1 - 5 * w) : 0;
     }
   const Eigen::MatrixXd bread = dense::inverse(X.transpose() * slope.asDiagonal() * X);
-  const Eigen::VectorXd score = out.weights.cwiseProduct(residual);
-  const double rows = double(y.size()), correction = rows / (rows - double(X.cols()));
+  // A row draws the fit towards itself: its score is by its residual from the fit of the others (HC3).
+  const Eigen::MatrixXd inside = dense::inverse(X.transpose() * out.weights.asDiagonal() * X);
+  Eigen::VectorXd score = out.weights.cwiseProduct(residual);
+  for (Eigen::Index i = 0; i < y.size(); ++i) {
+    const double alone = out.weights[i] * X.row(i).dot(inside * X.row(i).transpose());
+    if (!(alone < 1 - 1e-9)) throw NonConvergence("regression: one row alone decides a coefficient");
+    score[i] /= 1 - alone;
+  }
   const Eigen::MatrixXd meat = X.transpose() * score.cwiseAbs2().asDiagonal() * X;
   const Eigen::VectorXd back = length.cwiseInverse();
-  out.covariance = correction * back.asDiagonal() * bread * meat * bread * back.asDiagonal();
+  out.covariance = back.asDiagonal() * bread * meat * bread * back.asDiagonal();
   out.coefficients = back.cwiseProduct(out.coefficients);
   return out;
 }

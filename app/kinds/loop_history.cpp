@@ -78,6 +78,7 @@ class HistoryJob final : public Job {
         Table place = sensors->table({key, "", "<channel>"});
         place.quantity({"arc_length", "of the sensor from the butt"}, "mm", Range::non_negative(), 0);
         if (place.has("axis")) place.choice({"axis", "bending that the strain gauge feels"}, {"lead", "droop"});
+        if (place.has_quantity("radius")) read_gauge_radius(place);
       }
     read_noise(data);
     return drives;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <cstdlib>
 #include <nlohmann/json.hpp>
@@ -69,7 +70,7 @@ std::optional<StudyRegression> read_regression(Table root) {
     for (std::size_t q = 0; q < r.of.size(); ++q)
       r.y[q].push_back(((*launch).*post::find_channel(split_unit(r.of[q]).stem)->value)() / of_unit[q]);
   }
-  const std::size_t least = 3 * r.on.size();
+  const std::size_t least = 4 * (1 + r.on.size());  // four for every unknown
   if (r.y.empty() || r.y.front().size() < least)
     t->fail("shots", fmt::format("a regression on {} inputs needs {} whole rows, and a quantity", r.on.size(), least));
   return r;
@@ -90,6 +91,7 @@ nlohmann::json report_regression(Output& out, const StudyRegression& r) {
     json["median"][r.on[k]] = centre;
     X.col(Eigen::Index(k) + 1) = Eigen::Map<const Eigen::VectorXd>(r.x[k].data(), X.rows()).array() - centre;
   }
+  const double t = boost::math::quantile(boost::math::students_t(double(X.rows() - X.cols())), 0.975);
   post::Table slopes{{{"output"}, {"over"}, {"slope", "{:.6g}"}, {"half_width_95", "{:.4g}"}}};
   post::TextTable table{.rows = {{"measured slope over"}}, .first_width = 24, .least_width = 16, .even = false};
   for (const std::string& name : r.on) table.rows[0].push_back(post::label(name));
@@ -99,7 +101,7 @@ nlohmann::json report_regression(Output& out, const StudyRegression& r) {
     nlohmann::json& j = json["slopes"][r.of[q]];
     for (std::size_t k = 0; k < r.on.size(); ++k) {
       const auto at = Eigen::Index(k) + 1;
-      const double slope = fit.coefficients[at], half = 1.96 * std::sqrt(fit.covariance(at, at));
+      const double slope = fit.coefficients[at], half = t * std::sqrt(fit.covariance(at, at));
       j[r.on[k]] = {{"slope", slope}, {"half_width_95", half}};
       row.push_back(post::with_deviation(slope, half));
       slopes.add(r.of[q], r.on[k], slope, half);

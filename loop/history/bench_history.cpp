@@ -10,7 +10,7 @@ BenchHistory::BenchHistory(const Club& club, bool with_head, models::BenchOption
                            const std::vector<HistoryChannel>& channels)
     : start_(start), records_(std::move(records)), channels_(channels) {
   std::vector<models::BenchSensor> sensors;
-  for (const HistoryChannel& c : channels) sensors.push_back({c.reading, c.arc_length});
+  for (const HistoryChannel& c : channels) sensors.push_back({c.reading, c.arc_length, c.radius});
   std::map<double, std::size_t> known;
   for (const models::BenchRecord& r : records_) {
     const auto [it, fresh] = known.emplace(r.rotation_rate, benches_.size());

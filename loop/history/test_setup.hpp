@@ -1,6 +1,7 @@
 /// A club test as recorded: the club, its clamp or grip motion, and its sensors. Effects change it.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "loop/problem.hpp"
@@ -12,9 +13,10 @@ using Reading = models::BenchSensor::Quantity;
 
 struct HistoryChannel : Channel {
   Reading reading = Reading::lead;
-  int order = 0;          ///< 0 the quantity, 1 its rate, 2 its acceleration
-  double arc_length = 0;  ///< from the butt [m]
-  double colour = 0;      ///< correlation of neighbouring readings
+  int order = 0;                 ///< 0 the quantity, 1 its rate, 2 its acceleration
+  double arc_length = 0;         ///< from the butt [m]
+  std::optional<double> radius;  ///< of a strain gauge from the shaft's axis; none: the shaft's outer radius [m]
+  double colour = 0;             ///< correlation of neighbouring readings
 };
 
 /// What effects change; everything zero is the declared test.

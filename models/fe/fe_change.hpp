@@ -6,7 +6,7 @@ namespace hosel::models {
 /// Changes of what a case declares of ball and shaft; zeros change nothing but the mesh of a ball of one piece. (What
 /// the blow holds - head, delivery, hosel, Coulomb's coefficient in `contact.friction` - is changed there.)
 struct FeChange {
-  double cover_stiffness = 0;  ///< logarithm of the factor on all moduli of the outermost layer [-]
+  double cover_stiffness = 0;  ///< log of the factor on the outermost layer's shear moduli, elastic and branches [-]
   /// Added to the outermost layer [m]; a ball of one piece has one of `kSkin`.
   double cover_thickness = 0;
   double losses = 0;           ///< logarithm of the factor on the branch moduli of every layer [-]

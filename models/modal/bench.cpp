@@ -287,8 +287,8 @@ Bench::Bench(const Club& club, bool with_head, const BenchOptions& options, cons
         g.segment<3>(6 * i) = about.cross(Vec3(x + at * Vec3::UnitZ()));
         g.segment<3>(6 * i + 3) = about;
       }
-      read_[kBending].row(row) = st.outer_radius / (lead ? st.bending_stiffness_z : st.bending_stiffness_y) *
-                                 g.transpose() * W;
+      read_[kBending].row(row) = sensor.radius.value_or(st.outer_radius) /
+                                 (lead ? st.bending_stiffness_z : st.bending_stiffness_y) * g.transpose() * W;
       continue;
     }
     std::ptrdiff_t node = nb / 6;  // the head's
@@ -365,10 +365,11 @@ BenchModes Bench::modes(const ClubChange& change, int count) const {
     out.sensors.col(k) = R * force;
     out.tip.col(k) = G.middleRows(r, 6) * force;
     out.base.col(k) = move.transpose() * a;
-    const double stored = force.dot(G * force);
+    // Unit modal mass: twice the ratio times omega is what the shaft's dampers take; a field stiffens and damps
+    // nothing.
     const double shaft = yields[0] * force.dot(flex_[0] * force) + yields[1] * force.dot(flex_[1] * force);
-    out.ratio[k] = 0.5 * out.omega[k] * (damping_time_ + change.damping_time) * shaft / stored +
-                   0.5 * change.mass_damping / out.omega[k] + change.damping_ratio;
+    out.ratio[k] = 0.5 * ((damping_time_ + change.damping_time) * shaft + change.mass_damping) / out.omega[k] +
+                   change.damping_ratio;
   }
   return out;
 }

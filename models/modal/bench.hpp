@@ -8,6 +8,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -39,7 +40,8 @@ Head changed(const Head& head, const ClubChange& change);
 struct BenchSensor {
   enum class Quantity { lead, droop, shortening, twist, strain_lead, strain_droop };
   Quantity quantity = Quantity::lead;
-  double arc_length = 0;  ///< from the butt; the nearest node for motions [m]
+  double arc_length = 0;         ///< from the butt; the nearest node for motions [m]
+  std::optional<double> radius;  ///< of a strain gauge from the shaft's axis; none: the outer radius [m]
 };
 
 struct BenchOptions {

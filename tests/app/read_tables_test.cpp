@@ -4,6 +4,7 @@
 #include <cmath>
 #include <regex>
 
+#include "app/read_plate.hpp"
 #include "app/read_series.hpp"
 #include "app/read_shaft.hpp"
 #include "app/read_solid.hpp"
@@ -46,6 +47,22 @@ mass_centre_z_mm = [0.6, 1.8]
       for (const auto& [s, times] : {std::pair{0.0, 1.0}, {0.5, 2.0}, {1.0, 3.0}})
         EXPECT_NEAR((shaft.at(s).centres.*of)[axis], times * first, 1e-15) << key << " at " << s;
     }
+}
+
+/// A shell leans as its own springs do; a spring that the case states stands by itself, unless it says how it leans.
+TEST(ReadTables, AShellsRimLeansWhereItsSpringsAreItsOwn) {
+  const auto rim = [](const std::string& keys) {
+    CaseFile file =
+        written("read_rim", "[face.plate.thickness]\nvalue_mm = 2.8\n[face.plate.rim]\nradius_mm = 40\n" + keys);
+    return read_plate(file.root().table("face").table("plate")).rim;
+  };
+  const fem::RimSupport shell = rim("");
+  EXPECT_NEAR(shell.lean, std::pow(3 * (1 - 0.34 * 0.34), 0.25) / std::sqrt(0.04 * 0.8e-3), 1e-9 * shell.lean);
+  EXPECT_EQ(rim("deflection_GPa = 1").lean, shell.lean);
+  EXPECT_EQ(rim("rotation_N = 3000").lean, 0);
+  EXPECT_EQ(rim("stretch_GPa = 0.1").lean, 0);
+  EXPECT_EQ(rim("rotation_N = 3000\nlean_per_m = 200").lean, 200);
+  EXPECT_THROW(rim("rotation_N = inf\nlean_per_m = 200"), InputError);
 }
 
 TEST(ReadTables, AForcedGripHasAForce) {
@@ -164,6 +181,25 @@ TEST(ReadSeries, AStrainHasAKnownUnit) {
   EXPECT_EQ(si("strain_lead_pct"), 1e-2);
   EXPECT_THROW(si("strain_lead_mV"), InputError);
   EXPECT_THROW(si("strain_lead_microstrain"), InputError);
+}
+
+/// Only a strain gauge has a radius.
+TEST(ReadSeries, AStrainGaugeHasARadius) {
+  const auto dir = test::fresh_directory("series_radius");
+  test::write(dir / "record.csv", "time_ms,lead_mm,strain_lead_pct\n0,1,1\n1,2,2\n");
+  const auto radius = [&](const std::string& toml) {
+    CaseFile file = written("series_radius_case", toml);
+    std::optional<Table> sensors = file.root().optional_table("sensors");
+    std::vector<std::string> notes;
+    const Series s = read_series(dir / "record.csv", sensors ? &*sensors : nullptr, 1.0, 0.0, 1000, notes);
+    file.finish();
+    return s.channels.back().radius;
+  };
+  EXPECT_FALSE(radius("").has_value());
+  EXPECT_FALSE(radius("[sensors.strain_lead_pct]\narc_length_mm = 100\n").has_value());
+  EXPECT_NEAR(radius("[sensors.strain_lead_pct]\nradius_mm = 7.5\n").value(), 7.5e-3, 1e-15);
+  EXPECT_THROW(radius("[sensors.strain_lead_pct]\nradius_mm = 0.5\n"), InputError);
+  EXPECT_THROW(radius("[sensors.lead_mm]\nradius_mm = 7.5\n"), InputError);
 }
 
 }  // namespace hosel::app

@@ -16,6 +16,7 @@
 #include "command.hpp"
 #include "csv_file.hpp"
 #include "post/file.hpp"
+#include "solvers/robust_regression.hpp"
 
 namespace {
 
@@ -307,6 +308,17 @@ restitution_slope_s_per_m = 0.0
   EXPECT_NEAR(slopes["ball_speed_mps"]["impact_toe_mm"]["slope"].get<double>(), -0.1, 1e-3);
   EXPECT_NEAR(slopes["sidespin_rpm"]["impact_toe_mm"]["slope"].get<double>(), -40, 0.05);
   EXPECT_EQ(slopes["ball_speed_mps"]["rows_below_half_weight"], 1);
+  // Student's 97.5 % with 40 rows less three unknowns.
+  Eigen::MatrixXd X(40, 3);
+  Eigen::VectorXd spin(40);
+  for (int i = 0; i < 40; ++i) {
+    X.row(i) << 1, 40 + 0.25 * i, (i * 7) % 20 - 10;
+    spin[i] = -40 * X(i, 2) + 0.1 * ((i * 5) % 9 - 4);
+  }
+  const double half = 2.02619 * std::sqrt(hosel::solvers::robust_regression(X, spin).covariance(2, 2));
+  EXPECT_NEAR(slopes["sidespin_rpm"]["impact_toe_mm"]["half_width_95"].get<double>(), half, 1e-4 * half);
+  const Outcome few = command("run " + (dir / "case").string() + " --set regression.last_shot=11");
+  expect_refused(few, "a regression on 2 inputs needs 12 whole rows");
   const double ball = 0.04593, own = 1.8 * 0.2 / (0.2 + ball), heavier = 1.8 * 0.204 / (0.204 + ball),
                livelier = 1.82 * 0.2 / (0.2 + ball);
   const auto& part = said["parts"]["per m/s"]["mean"]["ball_speed_mps"];

@@ -96,6 +96,27 @@ double inner_force(const Model& model, const State& s, int first, int last) {
   return inside / rim;
 }
 
+/// The rim of a disc on a shell, moved outwards by u and turned by b, has the energy of a long cylinder's edge with
+/// that displacement and the slope -b: 1/2 D (4 B^3 u^2 - 4 B^2 u b + 2 B b^2).
+TEST(Plate, AShellAtTheRimBendsAsTheEdgeOfALongCylinder) {
+  constexpr double thickness = 0.02, radius = 0.7, u = 1e-3, poisson = kUnit.poisson;
+  const double B = std::pow(3 * (1 - poisson * poisson), 0.25) / std::sqrt(radius * thickness), D = rigidity(thickness);
+  const RimSupport shell = RimSupport::of_shell(kUnit, thickness, radius, 1);
+  const Face curvature{5, 5};
+  const Model held(disc(), 0.05, shell, curvature), free(disc(), 0.05, kFree, curvature);
+  for (const double b : {0.0, B * u, -0.5 * B * u}) {
+    const auto moved = [&](const Vector2d& x) {
+      const Vector2d n = x.normalized();
+      return x.norm() > 0 ? std::array<double, 5>{0, b * n.x(), b * n.y(), u * n.x(), u * n.y()}
+                          : std::array<double, 5>{};
+    };
+    const double stored = held.plate->energies(field(held, moved)).strain -
+                          free.plate->energies(field(free, moved)).strain,
+                 wanted = 0.5 * D * (4 * B * B * B * u * u - 4 * B * B * u * b + 2 * B * b * b);
+    EXPECT_NEAR(stored / (2 * kPi * wanted), 1, 1e-4) << b;
+  }
+}
+
 TEST(Plate, PatchTestsAreExact) {
   for (const double t : {0.3, 1e-3}) {
     const Model flat(distorted(), t, kFree);

@@ -168,5 +168,44 @@ TEST(Bench, GravityAndTurningStiffenAsThePendulumOnASpring) {
   EXPECT_NEAR(first(across, 1) - first({}, 0), rate * rate * (hub + 1), 0.01 * rate * rate * (hub + 1));
 }
 
+/// A field stiffens a mode and damps nothing: the dampers of the shaft take 2 zeta omega, turning or still.
+TEST(Bench, AFieldDampsNothing) {
+  Club club;
+  club.shaft = composite_shaft({{0, 40, 40, 0.06, 1e-3}, {1, 40, 40, 0.06, 1e-3}});
+  club.shaft->damping_time = 1e-3;
+  const auto modes = [&](const BenchOptions& o) { return Bench(club, false, o, {}).modes({.stiffening = 1}, 1); };
+  const BenchModes still = modes({.shear = false});
+  const double omega = still.omega[0];
+  EXPECT_NEAR(still.ratio[0], 0.5 * omega * 1e-3, 1e-6 * omega * 1e-3);
+  // The shape of the first mode is nearly that of the cantilever at rest; omega^2 is a sixth larger.
+  for (const BenchOptions& field :
+       {BenchOptions{.shear = false, .rotation_rate = omega, .rotation_axis = Vec3::UnitX()},
+        BenchOptions{.shear = false, .gravity = Vec3(0, 0, -100 * kGravity)}}) {
+    const BenchModes pulled = modes(field);
+    ASSERT_GT(pulled.omega[0], 1.08 * omega);
+    EXPECT_NEAR(pulled.ratio[0] * pulled.omega[0] / (still.ratio[0] * omega), 1, 0.03);
+  }
+}
+
+/// The strain is as far from the axis as the gauge: twice the radius, twice the reading. Without one the shaft's.
+TEST(Bench, StrainIsThatAtTheGaugesRadius) {
+  Club club;
+  club.shaft = composite_shaft({{0, 40, 40, 0.06, 4e-3}, {1, 40, 40, 0.06, 4e-3}});
+  using Quantity = BenchSensor::Quantity;
+  const Eigen::MatrixXd reading = Bench(club, false, {},
+                                        {{Quantity::strain_lead, 0.25},
+                                         {Quantity::strain_lead, 0.25, 4e-3},
+                                         {Quantity::strain_lead, 0.25, 8e-3},
+                                         {Quantity::strain_droop, 0.25},
+                                         {Quantity::strain_droop, 0.25, 5e-3}})
+                                      .modes({}, 4)
+                                      .sensors;
+  ASSERT_GT(reading.row(0).norm(), 1e-3);
+  ASSERT_GT(reading.row(3).norm(), 1e-3);
+  EXPECT_LT((reading.row(1) - reading.row(0)).norm(), 1e-12 * reading.row(0).norm());
+  EXPECT_LT((reading.row(2) - 2 * reading.row(0)).norm(), 1e-12 * reading.row(0).norm());
+  EXPECT_LT((reading.row(4) - 1.25 * reading.row(3)).norm(), 1e-12 * reading.row(3).norm());
+}
+
 }  // namespace
 }  // namespace hosel::models
