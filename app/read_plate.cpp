@@ -168,6 +168,7 @@ fem::RimSupport read_rim(Table t, const fem::PlateMaterial& material) {
                               "GPa", positive, standard(out.deflection));
   out.stretch =
       t.quantity({"stretch", "the same in the face's plane; inf: held"}, "GPa", positive, standard(out.stretch));
+  t.decided_by("support");
   out.lean = t.number({"lean_per_m",
                        "turn about the rim where no moment acts, per displacement in the face's plane; 0 where "
                        "rotation or stretch is stated"},
