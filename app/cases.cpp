@@ -110,8 +110,9 @@ void copy_case(const std::string& from, const fs::path& to) {
       fs::copy_file(source / path, to / own);
       moved = own.string();
     }
-    for (std::size_t at = 0; (at = text.find('"' + name + '"', at)) != std::string::npos; at += moved.size())
-      text.replace(at + 1, name.size(), moved);
+    for (const char quote : {'"', '\''})
+      for (std::size_t at = 0; (at = text.find(quote + name + quote, at)) != std::string::npos; at += moved.size())
+        text.replace(at + 1, name.size(), moved);
   }
   post::write_file(to / "case.toml", text);
 }

@@ -150,8 +150,10 @@ std::string two_digits(double error) {
   return fmt::format("{:.0f}", step * std::round(error / step));
 }
 
-/// Everything in a summary that is a launch, by its place there; of `models` by the model's name.
+/// Everything in a summary that is a launch, by its place there; of `models` by the model's name. Means over a study's
+/// points are none.
 void launches_in(const json& j, const std::string& name, std::map<std::string, json>& out) {
+  if (name == "mean") return;
   if (j.is_object() && j.contains("ball_speed_mps") && j["ball_speed_mps"].is_number()) {
     out[name.starts_with("models.") ? name.substr(7) : name] = j;
     return;
@@ -213,6 +215,17 @@ std::string different_files(const std::map<std::string, std::string>& a, const s
       out += fmt::format("  {}: {}\n", one_line(name), what);
   }
   return out;
+}
+
+/// A line of the points of two studies, which are rows of a table and no launches; empty of other runs.
+std::string points_said(const fs::path& a, const fs::path& b) {
+  const fs::path one = a / "points.csv", other = b / "points.csv";
+  if (!fs::exists(one) || !fs::exists(other)) return {};
+  try {
+    return fmt::format("points\n  points.csv: {}\n", post::read_file(one) == post::read_file(other)
+                                                         ? "the same"
+                                                         : "its content differs; it has the launches, point by point");
+  } catch (const std::runtime_error& e) { throw InputError(e.what()); }
 }
 
 /// A number or a list of numbers as a case states it, in SI; nothing of anything else.
@@ -334,6 +347,7 @@ std::string difference(const fs::path& a_dir, const fs::path& b_dir) {
   if (compared) out += fmt::format("  {:<36} {:>12} {:>12} {:>12} {:>12}\n", "", "A", "B", "B - A", "numerical");
   out += rows + band;
   if (estimated_by_none) out += "  numerical -: runs of this kind tell no error of a launch\n";
+  out += points_said(a_dir, b_dir);
   // Everything else that both runs say.
   struct Moved {
     std::string key;

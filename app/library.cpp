@@ -371,7 +371,7 @@ std::optional<LoftSets> sets_by_loft(Table root) {
   if (!ball || ball->has("reduced") || root.has("motion") || (contact && contact->has("name"))) return {};
   const auto model = named_entry(*ball, "model", Shelf::balls);
   if (!model) return {};
-  LoftSets out{library_ball(*model).reduced, face_name(root)};
+  LoftSets out{library_ball(*model).reduced, face_name(root), *model};
   return out.sets.size() > 1 ? std::optional(std::move(out)) : std::nullopt;
 }
 
@@ -427,7 +427,7 @@ std::optional<NamedContact> named_contact(Table root) {
   if (!ball) return {};
   const auto model = named_entry(*ball, "model", Shelf::balls);
   if (!model) return {};
-  LoftSets by_loft{library_ball(*model).reduced, {}};
+  LoftSets by_loft{library_ball(*model).reduced, {}, *model};
   const std::vector<NamedContact>& sets = by_loft.sets;
   if (sets.empty()) return {};
   const std::vector<std::string> names = names_in(sets);
@@ -459,6 +459,10 @@ bool asks_law(std::string_view model) {
   return std::ranges::find(laws, model) != laws.end();
 }
 
+bool asks_face(std::string_view model) {
+  return model.starts_with("fe-") || model == "volumetric" || model == "shaft-coupled";
+}
+
 void check_use(Table root, const std::optional<Use>& use, const std::vector<std::string>& models) {
   const bool fe = std::ranges::any_of(models, [](const std::string& m) { return m.starts_with("fe-"); });
   const bool volume =
@@ -486,7 +490,7 @@ void check_use(Table root, const std::optional<Use>& use, const std::vector<std:
     needs(hertz, contact->hertz_maw || root.has("hertz_maw"), "constants of hertz-maw");
     if (law || volume || hertz || (fe && contact->face_friction)) refuse(at, key, contact->name, contact->seen, use);
   }
-  if (!fe && !volume) return;
+  if (std::ranges::none_of(models, asks_face)) return;
   if (auto face = root.optional_table("face"); face && !face->keys().empty()) {
     if (const auto called = named_entry(*face, "name", Shelf::faces); called && *called != kRigidFace)
       refuse(*face, "name", *called, library_face(*called).seen, use);

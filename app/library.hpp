@@ -114,6 +114,7 @@ std::optional<NamedContact> named_contact(Table root);
 struct LoftSets {
   std::vector<NamedContact> sets;
   std::string face;  ///< of the case or its head; empty: none
+  std::string ball;  ///< whose they are
   /// The set that saw the spin loft of this blow; nullptr where none did.
   const NamedContact* at(const Blow& blow) const;
   /// Whether it matters to a model which of them is taken.
@@ -129,6 +130,8 @@ std::string consistent_set(const LoftSets& sets, const std::function<Blow(const 
 
 /// Whether this model takes its contact from [contact]: restitution and friction.
 bool asks_law(std::string_view model);
+/// Whether this model knows a face that yields: [face], or that of the head.
+bool asks_face(std::string_view model);
 
 /// Refuses, with a sentence, an entry that has nothing of what `models` ask, and one that is used beyond what it saw
 /// unless `extrapolate = true` stands beside its name. Without a use, which a swing tells at its end, the first alone.

@@ -246,7 +246,7 @@ models::Options read_options(Table root, const std::vector<std::string>& models,
                      (root.has("contact") && root.table("contact").has("face_friction"));
   std::optional<NamedContact> named;
   if (overlap || asked("hertz-maw")) named = named_contact(root);
-  if (overlap || fe || there) blow.club.head.compliance = read_club_face(root);
+  if (there || std::ranges::any_of(models, asks_face)) blow.club.head.compliance = read_club_face(root);
   if (overlap && has_plate(root))
     root.table("face").fail(
         "plate",

@@ -209,10 +209,10 @@ std::string RunPage::html(const std::string& resolved, const std::string& comman
                    commands("hosel keys " + kind));
   s += "<h2>Inputs</h2><div class='inputs'>" + inputs + "</div>";
   s += "<h2>The same again</h2>" +
-       commands(command + "\nhosel run " + shell_word((directory / "case.resolved.toml").string()) + " --out " +
-                beside_out(directory, "again")) +
+       commands((command.empty() ? "" : command + "\n") + "hosel run " +
+                shell_word((directory / "case.resolved.toml").string()) + " --out " + beside_out(directory, "again")) +
        fmt::format(
-           "<p><small>hosel {}, {}. The second command needs no default of this version: the case beside this "
+           "<p><small>hosel {}, {}. The last command needs no default of this version: the case beside this "
            "page names every one; summary.json there has the numbers.</small></p>",
            escape_html(program_version()), now());
   if (own && !printed_.empty()) s += "<h2>Printed by the run</h2>" + printed;

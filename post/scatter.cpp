@@ -42,4 +42,6 @@ Vector2d Scatter::extent(double share) const {
   return 2 * (v.reverse() * squared_radius(share)).cwiseMax(0).cwiseSqrt();
 }
 
+Vector2d Scatter::longer() const { return dense::eigenpairs(covariance).vectors.col(1); }
+
 }  // namespace hosel::post

@@ -17,8 +17,10 @@ struct Scatter {
   explicit Scatter(std::vector<Eigen::Vector2d> points);
   /// The ellipse that holds a share of a normal distribution of this mean and covariance.
   Series ellipse(double share, std::string label) const;
-  /// Length and width of that ellipse.
+  /// The longer and the shorter axis of that ellipse, wherever they lie.
   Eigen::Vector2d extent(double share) const;
+  /// A unit vector along the longer axis.
+  Eigen::Vector2d longer() const;
 };
 
 }  // namespace hosel::post

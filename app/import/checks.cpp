@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "app/import/carry_ratio.hpp"
@@ -140,8 +141,9 @@ void check_speeds(Reading& r) {
     std::string best;
     double least = std::min(std::log(kUnitFits), std::abs(std::log(now)) / 2);
     for (const char* unit : {"mph", "kmh", "mps"}) {
-      const std::optional<double> ratio = si_of(unit) == si ? std::nullopt : off(si_of(unit));
-      if (ratio && *ratio > 0 && std::abs(std::log(*ratio)) < least) least = std::abs(std::log(*ratio)), best = unit;
+      constexpr double none = std::numeric_limits<double>::infinity();
+      const double ratio = si_of(unit) == si ? none : off(si_of(unit)).value_or(none);
+      if (ratio > 0 && std::abs(std::log(ratio)) < least) least = std::abs(std::log(ratio)), best = unit;
     }
     return best;
   };

@@ -12,6 +12,7 @@
 
 #include "app/kinds/impact_page.hpp"
 #include "app/library.hpp"
+#include "app/overrides.hpp"
 #include "app/read_blow.hpp"
 #include "app/read_flight.hpp"
 #include "app/read_options.hpp"
@@ -61,7 +62,8 @@ class ImpactJob final : public Job {
       for (const std::string& s : set)
         if (const std::string table = s.substr(0, s.find_first_of(".[=")); std::ranges::count(kOfTheCase, table))
           t.fail("set", fmt::format("'{}': {} is the case's own; a column is a blow and its flight", s, table));
-      set.insert(set.end(), file.overrides().begin(), file.overrides().end());  // the command line has the last word
+      check_kept(t, set, file.overrides());
+      set.insert(set.end(), file.overrides().begin(), file.overrides().end());
       CaseFile other(file, set);
       compared_.push_back(read_side(other.root()));
       compared_.back().name = name;
@@ -189,6 +191,17 @@ class ImpactJob final : public Job {
     bool yields() const { return fe.face || blow.club.head.compliance; }
     const mesh::PlateOutline* outline() const { return plate ? &plate->design().outline : nullptr; }
   };
+
+  /// Overrides of the whole case come after those of a column, which would no longer differ as its name says.
+  static void check_kept(const Table& column, const std::vector<std::string>& own,
+                         const std::vector<std::string>& all) {
+    for (const std::string& s : own)
+      for (const std::string& other : all)
+        if (const std::string lost = replaced(other, s); !lost.empty())
+          column.fail("set", fmt::format("'{}' is also set for every column ({}): this one would not differ by it; "
+                                         "`--set compare=[]` leaves the columns out",
+                                         lost, key_of(other)));
+  }
 
   static Side read_side(Table root) {
     Side side;

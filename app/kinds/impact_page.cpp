@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "app/command_help.hpp"
+#include "app/library.hpp"
 #include "golf/first_contact.hpp"
 #include "golf/units.hpp"
 #include "models/oblique.hpp"
@@ -138,7 +139,7 @@ void suggest(Output& out, const ImpactStory& s) {
     page.suggest(
         "A finer answer, with the numerical error of every number (some ten times as long):",
         again + " --set accuracy=default --set error_estimate=true --out " + beside_out(out.directory(), "finer"));
-  if (!s.yields && !wall && models::wants_yielding_face(s.blow.club.head))
+  if (!s.yields && !wall && asks_face(s.columns.back().title) && models::wants_yielding_face(s.blow.club.head))
     page.suggest("A face that yields, as a modern driver's does:",
                  again + " --set face.name=modern-driver --out " + beside_out(out.directory(), "yielding"));
   if (!s.flies && !wall)

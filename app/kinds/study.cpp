@@ -5,7 +5,6 @@
 #include <tbb/enumerable_thread_specific.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <map>
 #include <mutex>
@@ -103,6 +102,7 @@ class StudyJob final : public PointJob {
     if (budgets_ && table_.design.size() > kMostBudgets)
       root.fail("flight", fmt::format("launch_error and beside tell of each launch: of {} at most", kMostBudgets));
     if (!studied_) read_solved(root);
+    check_columns(root);
     check_varied_once(root);
     if (!studied_ && root.has("motion"))
       left_out_ = table_.design.leave_out_rows([&](const DesignLevel& l) {
@@ -249,17 +249,18 @@ class StudyJob final : public PointJob {
   }
 
  private:
-  /// One head that two sets of parameters answer for: the answers jump where the loft passes from one to the other.
+  /// One ball on one head that two sets of parameters answer for: the answers jump where the loft passes from one to
+  /// the other.
   void tell_sets(Output& out) const {
-    for (const auto& [head, lofts] : lofts_of_sets_) {
+    for (const auto& [struck, lofts] : lofts_of_sets_) {
       if (lofts.size() < 2) continue;
       std::vector<std::string> ranges;
       for (const auto& [set, of] : lofts)
         ranges.push_back(fmt::format("'{}' {:.3g} to {:.3g} deg", set, of.low, of.high));
       out.warn(fmt::format(
-          "the loft chooses between {} sets of the ball's parameters, and answers jump from one to the next (spin "
-          "loft: {}): ball.reduced names one for all points",
-          lofts.size(), fmt::join(ranges, ", ")));
+          "the loft chooses between {} sets of the parameters of the ball '{}', and answers jump from one to the next "
+          "(spin loft: {}): ball.reduced names one for all points",
+          lofts.size(), struck.ball, fmt::join(ranges, ", ")));
     }
   }
 
@@ -450,6 +451,9 @@ class StudyJob final : public PointJob {
         root.fail("solve", fmt::format("'{}' is an output too: give what is found another name", s.name));
       table_.outputs.push_back(s.name);
     }
+  }
+
+  void check_columns(const Table& root) const {
     for (const std::string& column : table_.design.columns())
       if (std::ranges::find(table_.outputs, column) != table_.outputs.end())
         root.fail("outputs", fmt::format("'{}' is a column of the design too", column));
@@ -467,8 +471,9 @@ class StudyJob final : public PointJob {
       if (const std::string twice = table_.design.varied(s.key, s.variants); !twice.empty())
         root.fail("solve", fmt::format("'{}' is sought, and '{}' is varied", s.key, twice));
       for (const std::string& set : blow_->overrides())
-        if (const std::string key = set.substr(0, set.find('=')); same_quantity(s.key, key))
-          root.fail("solve", fmt::format("'{}' is sought, and set to one value ({})", s.key, key));
+        for (const std::string& key : keys_of(set))
+          if (same_quantity(s.key, key))
+            root.fail("solve", fmt::format("'{}' is sought, and set to one value ({})", s.key, key));
       for (const StudySolve& other : solves_)
         // A later [[solve]] of the same key goes on from what an earlier one found.
         if (s.key != other.key && same_quantity(s.key, other.key) && both(s, other))
@@ -553,7 +558,8 @@ class StudyJob final : public PointJob {
     if (!set) return;
     const Head& head = asked.blow.club.head;
     const double loft = degrees(use_of(asked.blow).spin_loft.low);
-    auto& lofts = lofts_of_sets_[{head.mass, head.cg.x(), head.cg.y(), head.cg.z()}];
+    auto& lofts =
+        lofts_of_sets_[{asked.sets->ball, asked.sets->face, head.mass, head.cg.x(), head.cg.y(), head.cg.z()}];
     const auto [at, fresh] = lofts.try_emplace(set->name, Interval{loft, loft});
     at->second = {std::min(at->second.low, loft), std::max(at->second.high, loft)};
   }
@@ -786,8 +792,14 @@ class StudyJob final : public PointJob {
   mutable std::map<std::string, Swing> swings_;   ///< by what the design sets, place on the face apart
   mutable std::map<std::string, double> solved_;  ///< by the resolved case at the low end
   std::vector<std::string> left_out_;             ///< rows whose recorded swing is not there
-  std::map<std::array<double, 4>, std::map<std::string, Interval>> lofts_of_sets_;  ///< by head; spin lofts [deg]
-  std::size_t off_face_ = 0;                                                        ///< points struck off the face
+  /// What the loft alone chooses a set of parameters for.
+  struct Struck {
+    std::string ball, face;  ///< of the library
+    double mass, cg_x, cg_y, cg_z;
+    auto operator<=>(const Struck&) const = default;
+  };
+  std::map<Struck, std::map<std::string, Interval>> lofts_of_sets_;  ///< by set; spin lofts [deg]
+  std::size_t off_face_ = 0;                                         ///< points struck off the face
   std::string first_off_face_;
   bool turf_ = false;     ///< of a point
   bool of_face_ = false;  ///< an output asks for the club's own face

@@ -23,20 +23,12 @@ std::string without_quotes(const std::string& toml) {
   return quoted ? toml.substr(1, toml.size() - 2) : toml;
 }
 
-/// Whether a key that is set later leaves nothing of an earlier one: it is the same, or the list of which that is an
-/// element.
-bool replaces(const std::string& later, const std::string& earlier) {
-  return same_quantity(later, earlier) ||
-         (earlier.ends_with(']') && same_quantity(later, earlier.substr(0, earlier.rfind('['))));
-}
-
-std::string key_of(const std::string& override) { return override.substr(0, override.find('=')); }
-
 /// The keys that a level of the factor sets.
-std::set<std::string> keys_of(const DesignFactor& factor) {
+std::set<std::string> keys_of_levels(const DesignFactor& factor) {
   std::set<std::string> out;
   for (const DesignLevel& l : factor.levels)
-    for (const std::string& s : l.set) out.insert(key_of(s));
+    for (const std::string& s : l.set)
+      for (const std::string& key : keys_of(s)) out.insert(key);
   return out;
 }
 
@@ -51,7 +43,7 @@ DesignFactor read_variants(Table root) {
     level.set = t.texts({"set", "keys that the variant changes, table.key=value"}, std::vector<std::string>{});
     for (std::size_t i = 0; i < level.set.size(); ++i)
       for (std::size_t j = 0; j < i; ++j)
-        if (same_quantity(key_of(level.set[i]), key_of(level.set[j])))
+        if (!replaced(level.set[i], level.set[j]).empty())
           t.fail("set", fmt::format("gives one quantity twice: '{}' and '{}'", level.set[j], level.set[i]));
     level.from = t.place_of("set");
     t.text({"range", "where its figures come from"}, "");
@@ -113,11 +105,6 @@ DesignFactor grid_factor(const post::FaceGrid& grid, const std::string& from) {
 
 }  // namespace
 
-bool same_quantity(const std::string& a, const std::string& b) {
-  const SplitName x = split_unit(a), y = split_unit(b);
-  return a == b || (x.unit && y.unit && x.stem == y.stem);
-}
-
 std::vector<MeasuredRange> read_measured(Table t) {
   std::vector<MeasuredRange> out;
   for (const std::string& key : t.keys()) {
@@ -178,7 +165,8 @@ std::string Design::varied(const std::string& key, const std::vector<std::string
           std::ranges::find(variants, l.cells.front()) == variants.end())
         continue;
       for (const std::string& s : l.set)
-        if (same_quantity(key, key_of(s))) return key_of(s);
+        for (const std::string& set : keys_of(s))
+          if (same_quantity(key, set)) return set;
     }
   return "";
 }
@@ -187,16 +175,20 @@ void Design::check_varied_once(const Table& root, const std::vector<std::string>
   const auto refuse = [&](const std::string& key, const std::string& how) {
     root.fail("", fmt::format("'{}' is varied by this study{}", key, how));
   };
-  for (const DesignFactor& f : factors_) {
-    const bool first = f.kind == FactorKind::variants || f.kind == FactorKind::rows;
-    for (const std::string& key : keys_of(f)) {
-      for (const std::string& s : stated)
-        if (const std::string other = key_of(s); first ? replaces(other, key) : replaces(key, other))
-          refuse(key, fmt::format(", and set to one value by `--set` or the study's `set` ({})", other));
-      for (const DesignFactor& g : factors_)
-        if (&g != &f)
-          for (const std::string& other : keys_of(g))
-            if (replaces(key, other)) refuse(other, fmt::format(" twice, as '{}' too", key));
+  std::vector<std::set<std::string>> keys;
+  for (const DesignFactor& f : factors_) keys.push_back(keys_of_levels(f));
+  for (std::size_t f = 0; f < factors_.size(); ++f) {
+    const bool first = factors_[f].kind == FactorKind::variants || factors_[f].kind == FactorKind::rows;
+    for (const std::string& key : keys[f]) {
+      for (const std::string& s : stated) {
+        const std::vector<std::string> others = keys_of(s);
+        if (first ? replaces(others.front(), key)
+                  : std::ranges::any_of(others, [&](const std::string& other) { return replaces(key, other); }))
+          refuse(key, fmt::format(", and set to one value by `--set` or the study's `set` ({})", others.front()));
+      }
+      for (std::size_t g = f + 1; g < factors_.size(); ++g)  // set later
+        for (const std::string& other : keys[g])
+          if (replaces(other, key) || element_of(other, key)) refuse(key, fmt::format(" twice, as '{}' too", other));
     }
   }
 }
@@ -344,6 +336,8 @@ Design read_design(Table root) {
   };
   std::vector<DesignFactor> axes;
   std::vector<std::pair<std::string, Table>> swept;
+  std::vector<std::string> names, others = out.columns();  // of the axes; of what else is a column
+  others.insert(others.end(), kOwnColumns.begin(), kOwnColumns.end());
   std::vector<std::pair<Table, std::string>> twice;  // values: told once the design is no larger than it may be
   for (Table t : root.tables("axis")) {
     std::vector<std::string> keys;
@@ -358,6 +352,10 @@ Design read_design(Table root) {
           t.fail(t.has("keys") ? "keys" : "key", fmt::format("'{}' is an axis already", other));
       swept.emplace_back(key, t);
     }
+    const bool other = t.has("name") && std::ranges::find(others, name) != others.end();
+    if (other || std::ranges::find(names, name) != names.end())
+      t.fail("name", fmt::format("'{}' is another column of points.csv: give this axis a name of its own", name));
+    names.push_back(name);
     const auto level = [&](const std::string& toml) {
       return axis_level(keys, toml, t.place_of(t.has("range") ? "range" : "values"));
     };
@@ -379,6 +377,7 @@ Design read_design(Table root) {
       continue;
     }
     const auto range = t.numbers({"range", "lowest and highest value"}, 2);
+    if (range[0] == range[1]) t.fail("range", "both ends are the same: state the value in its own table");
     if (!sample || t.has("count")) {
       const long count = t.integer({"count",
                                     "of values from one end of the range to the other, crossed with all other axes; "

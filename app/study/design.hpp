@@ -8,21 +8,21 @@
 ///                  key, range | mean and sd                drawn by the [sample]
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <functional>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
+#include "app/overrides.hpp"
 #include "app/reader.hpp"
 #include "post/face_map.hpp"
 #include "solvers/distribution.hpp"
 
 namespace hosel::app {
-
-/// The same key, or the same quantity in another unit.
-bool same_quantity(const std::string& a, const std::string& b);
 
 /// Lowest and highest measured value of a quantity (one number: twice), as it was named.
 struct MeasuredRange {
@@ -106,6 +106,9 @@ class Design {
   std::vector<DesignFactor> factors_;
   std::optional<post::FaceGrid> grid_;
 };
+
+/// Columns of points.csv that are none of the design or the outputs.
+inline constexpr std::array<std::string_view, 3> kOwnColumns = {"point", "model", "error"};
 
 /// More points than this are a slip of the keys: each is read before anything is computed.
 inline constexpr std::size_t kMostPoints = 100'000;

@@ -74,15 +74,17 @@ nlohmann::json report_landing(Output& out, const StudyTable& table, const StudyE
                            balls_struck - all.at.size(), balls_struck));
     const double low = Binomial::find_lower_bound_on_p(n, hit, 0.025),
                  high = Binomial::find_upper_bound_on_p(n, hit, 0.025);
-    const Vector2d extent = all.extent(0.95), sd = all.covariance.diagonal().cwiseSqrt();
+    const Vector2d extent = all.extent(0.95), sd = all.covariance.diagonal().cwiseSqrt(),
+                   longer = all.longer().cwiseAbs();
+    const double from_line = degrees(std::atan2(longer.x(), longer.y()));
     const double carried = all.mean.y();
     std::string said = fmt::format(
         "{}{:.0f} % of {} balls (95 % interval {:.0f} to {:.0f} %) land in the fairway, {:.4g} {} wide. Carry is "
         "{:.0f} "
-        "{} with a standard deviation of {:.1f} {}, side {} {} with {:.1f} {}. The ellipse for 95 % is {:.0f} {} "
-        "long and {:.0f} {} wide.",
+        "{} with a standard deviation of {:.1f} {}, side {} {} with {:.1f} {}. The axes of the ellipse for 95 % are "
+        "{:.0f} and {:.0f} {}, the longer one {:.0f} deg from the target line.",
         whose, 100 * hit / n, balls_struck, 100 * low, 100 * high, fairway, m, carried, m, sd.y(), m,
-        post::fixed(all.mean.x(), 1, true), m, sd.x(), m, extent.x(), m, extent.y(), m);
+        post::fixed(all.mean.x(), 1, true), m, sd.x(), m, extent.x(), extent.y(), m, from_line);
     auto& entry = json[name.empty() ? "case" : name];
     entry = {{"balls", balls_struck},
              {"landed", all.at.size()},

@@ -3,14 +3,30 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <boost/math/tools/toms748_solve.hpp>
 #include <cmath>
 #include <map>
+#include <string_view>
 
 #include "app/study/compare.hpp"
+#include "app/study/design.hpp"
 #include "solvers/errors.hpp"
 
 namespace hosel::app {
+namespace {
+
+/// What a point has beside its outputs (StudyJob, compute_missing): no name of what was found.
+constexpr std::array<std::string_view, 7> kMembers = {"doubts", "error",  "heavier", "history",
+                                                      "hosel",  "launch", "skipped"};
+
+void check_solve_name(const Table& t, const std::string& name) {
+  const auto taken = [&](const auto& names) { return std::ranges::find(names, name) != names.end(); };
+  if (taken(kMembers) || taken(kOwnColumns))
+    t.fail("name", fmt::format("'{}' is something else of every point: give what is found another name", name));
+}
+
+}  // namespace
 
 std::vector<StudySolve> read_solves(Table root, const std::vector<std::string>& variants, bool flies) {
   std::vector<StudySolve> out;
@@ -24,6 +40,7 @@ std::vector<StudySolve> read_solves(Table root, const std::vector<std::string>& 
                  .value = 0,
                  .set = {},
                  .variants = {}};
+    check_solve_name(t, s.name);
     const auto range = t.numbers({"range", "of the key: the output at its ends must enclose the value"}, 2);
     if (!(range[0] < range[1])) t.fail("range", "give the lowest and the highest");
     s.low = range[0], s.high = range[1];
@@ -48,9 +65,9 @@ double solve(const StudySolve& wanted, const std::function<std::optional<double>
   };
   const double low = excess(wanted.low), high = excess(wanted.high);
   if (low * high > 0)
-    throw solvers::NonConvergence(fmt::format("{}: no {} from {:g} to {:g} makes {} {:g}: it is {:.5g} and {:.5g}",
-                                              wanted.name, wanted.key, wanted.low, wanted.high, wanted.output.name,
-                                              wanted.value, low + wanted.value, high + wanted.value));
+    throw solvers::NonConvergence(fmt::format(
+        "{}: {} is {:.5g} and {:.5g} at the ends of the range of {}: they do not enclose {:g}; a narrower range may",
+        wanted.name, wanted.output.name, low + wanted.value, high + wanted.value, wanted.key, wanted.value));
   std::uintmax_t most = 200;
   const auto [a, b] = boost::math::tools::toms748_solve(excess, wanted.low, wanted.high, low, high,
                                                         boost::math::tools::eps_tolerance<double>(30), most);

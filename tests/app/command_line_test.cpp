@@ -175,6 +175,23 @@ TEST(CommandLine, DiffTellsTextsFlagsAndListsOfOtherLengths) {
   EXPECT_EQ(text.find(" only"), std::string::npos) << text;
 }
 
+/// A mean over the points is no launch.
+TEST(CommandLine, DiffComparesPointsByTheirTable) {
+  const fs::path home = fresh_directory("diff_studies");
+  write(home / "case.toml", study_of_blow("[\"ball_speed_mps\", \"launch_angle_deg\"]") +
+                                "[[axis]]\nkey = \"head.mass_kg\"\nvalues = [0.19, 0.2]\n");
+  for (const auto& [name, set] : {std::pair{"a", ""}, {"b", " --set delivery.club_speed_mps=46"}, {"c", ""}})
+    ASSERT_EQ(command("run '" + home.string() + "' --quiet --out '" + (home / name).string() + "'" + set).status, 0);
+  const auto diff = [&](const char* other) {
+    return command("diff '" + (home / "a").string() + "' '" + (home / other).string() + "'").text;
+  };
+  const std::string moved = diff("b"), same = diff("c");
+  EXPECT_EQ(moved.find("launches\n"), std::string::npos) << moved;
+  EXPECT_NE(moved.find("points\n  points.csv: its content differs"), std::string::npos) << moved;
+  EXPECT_NE(moved.find("  mean.ball_speed_mps "), std::string::npos) << moved;
+  EXPECT_NE(same.find("points\n  points.csv: the same\n"), std::string::npos) << same;
+}
+
 TEST(CommandLine, DiffSaysWhereItsErrorComesFrom) {
   const fs::path home = fresh_directory("diff_band"), blow = home / "blow";
   write(blow / "case.toml", kEccentricBlow + "[ball]\nmodel = \"tour\"\n[contact]\nface_friction = 0.3\n");

@@ -46,6 +46,28 @@ TEST(Doubts, AJumpOverTheWantedValueIsNoSolution) {
   }
 }
 
+/// Between two ends on one side of the wanted value there may be one on the other: nothing is said of what lies
+/// between.
+TEST(Doubts, EndsThatDoNotEncloseAValueAreSaidToBeEnds) {
+  StudySolve s{.name = "loft",
+               .key = "delivery.dynamic_loft_deg",
+               .low = 5,
+               .high = 50,
+               .output = {},
+               .value = 180,
+               .set = {},
+               .variants = {}};
+  s.output.name = "carry_yd";
+  try {
+    hosel::app::solve(s, [](double x) { return std::optional(200 - (x - 20) * (x - 20) / 5); });
+    FAIL() << "the ends do not enclose it";
+  } catch (const hosel::solvers::NonConvergence& e) {
+    EXPECT_EQ(std::string(e.what()),
+              "loft: carry_yd is 155 and 20 at the ends of the range of delivery.dynamic_loft_deg: they do not enclose "
+              "180; a narrower range may");
+  }
+}
+
 /// One branch a layer knows its losses at one frequency: far from the measured temperature it predicts no speed.
 TEST(Doubts, AColdBallOfOneBranchIsNoPrediction) {
   const std::string check = "check driver-toe --set ball.temperature.now_C=";

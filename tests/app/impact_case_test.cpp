@@ -362,6 +362,17 @@ TEST(ImpactCase, AComparedColumnIsTheCaseThatItSays) {
   }
 }
 
+/// What is set for the whole case comes after what a column sets.
+TEST(ImpactCase, AComparedColumnKeepsWhatItSets) {
+  const fs::path dir = fresh_directory("impact_compared_kept");
+  write(dir / "case.toml", kEccentricBlow + "[[compare]]\nname = \"heavy\"\nset = [\"head.mass_g=220\"]\n");
+  const auto check = [&](const std::string& set) { return command("check " + dir.string() + " --set '" + set + "'"); };
+  EXPECT_EQ(check("delivery.club_speed_mps=44").status, 0);
+  for (const char* set : {"head={name=\"driver-2024\"}", "head.mass_kg=0.21"})
+    expect_refused(check(set), "compare[1].set: 'head.mass_g' is also set for every column (head");
+  EXPECT_EQ(command("check " + dir.string() + " --set compare=[] --set head.mass_kg=0.21").status, 0);
+}
+
 TEST(ImpactCase, AComparedColumnTakesNoUnknownKey) {
   const fs::path dir = fresh_directory("impact_compared_key");
   const auto checked = [&](const std::string& set) {

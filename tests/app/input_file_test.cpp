@@ -103,6 +103,16 @@ TEST(InputFile, ANewCaseFindsWhatItsModelNamed) {
   EXPECT_EQ(o.status, 0) << o.text;
 }
 
+TEST(InputFile, ANewCaseFindsWhatStandsInSingleQuotes) {
+  const fs::path dir = fresh_directory("new_quotes");
+  write(dir / "data/blows.csv", "delivery.club_speed_mps\n40\n");
+  write(dir / "source/case.toml", study_of_blow() + "[rows]\nfile = '../data/blows.csv'\n");
+  const std::string mine = (dir / "far/away/mine").string();
+  ASSERT_EQ(command("new " + mine + " --from " + (dir / "source").string()).status, 0);
+  const Outcome o = command("check " + mine);
+  EXPECT_EQ(o.status, 0) << o.text;
+}
+
 TEST(InputFile, AShippedCaseIsCalledByItsName) {
   const fs::path dir = fresh_directory("elsewhere");
   FILE* pipe = popen(("cd " + dir.string() + " && " HOSEL_COMMAND " check cases/iron7-trackman 2>&1").c_str(), "r");

@@ -116,6 +116,24 @@ TEST(LoftSets, AnAxisThatPassesFromOneSetToTheNextIsDoubted) {
   EXPECT_EQ(study("[20.0, 22.0, 23.0]", "reduced = \"irons\"\n").status, 0);
 }
 
+/// Another ball, or another face, has other sets at the same loft.
+TEST(LoftSets, BallsThatAreVariedAreNoDoubtOfTheLoft) {
+  const fs::path dir = fresh_directory("loft_sets_balls");
+  const auto study = [&](const std::string& more = "") {
+    write(dir / "case/case.toml", "kind = \"study\"\nmodels = [\"rigid-eccentric\"]\noutputs = [\"spin_rate_rpm\"]\n" +
+                                      std::string("[[variant]]\nname = \"tour\"\nset = [\"ball.model='tour'\"]\n"
+                                                  "[[variant]]\nname = \"range\"\nset = [\"ball.model='range'\"]\n") +
+                                      more + std::string(kTourBlow).replace(kTourBlow.find("20.0"), 4, "22.0"));
+    return command("run " + (dir / "case").string() + " --force --out " + (dir / "out").string());
+  };
+  const Outcome balls = study();
+  ASSERT_EQ(balls.status, 0) << balls.text;
+  EXPECT_EQ(balls.text.find("the loft chooses between"), std::string::npos) << balls.text;
+  const Outcome lofts = study("[[axis]]\nkey = \"delivery.dynamic_loft_deg\"\nvalues = [20.0, 22.0, 23.0]\n");
+  EXPECT_NE(lofts.text.find("the loft chooses between 2 sets of the parameters of the ball 'tour'"), std::string::npos)
+      << lofts.text;
+}
+
 /// A ball chooses its parameters by the loft of [delivery] before a study varies it.
 TEST(LoftSets, AStudyOverLoftSaysThatTheDeliveryHasNone) {
   const fs::path dir = fresh_directory("loft_sets_none");

@@ -80,6 +80,21 @@ TEST(RunPage, SaysTheSideInWords) {
 }
 
 /// A ball against a wall: what it is thrown for, in the frame in which the wall rests.
+/// A face that yields is offered where the model that answers knows one.
+TEST(RunPage, OffersNoFaceToAModelThatKnowsNone) {
+  const fs::path dir = fresh_directory("page_face");
+  write(dir / "case.toml", kEccentricBlow + "[volumetric]\npublished = \"driver\"\n");
+  const auto page = [&](const std::string& models) {
+    const Outcome o = command("run " + dir.string() + " --quiet --force --set 'models=" + models + "' --out " +
+                              (dir / "out").string());
+    EXPECT_EQ(o.status, 0) << o.text;
+    return content(dir / "out/report.html");
+  };
+  EXPECT_TRUE(holds(page("[\"rigid-eccentric\",\"volumetric\"]"), "--set face.name=modern-driver"));
+  for (const char* model : {"rigid-eccentric", "stick-slip"})
+    EXPECT_FALSE(holds(page("[\"volumetric\",\"" + std::string(model) + "\"]"), "face.name=modern-driver")) << model;
+}
+
 TEST(RunPage, AnswersABounceInTheWallsFrame) {
   const fs::path dir = fresh_directory("page_wall");
   write(dir / "case.toml", R"(kind = "impact"

@@ -110,7 +110,8 @@ TEST(Plausible, ASlipOfAUnitIsInDoubt) {
   // The mesh has the ball's mass, whatever the densities of its layers.
   const auto layers = [](const std::string& density) {
     return command(
-        "check iron7-trackman --set contact.face_friction=0.3 --set 'ball={layers=[{law=\"neo-hooke\", young_MPa=60, "
+        "check iron7-trackman --set compare=[] --set contact.face_friction=0.3 --set "
+        "'ball={layers=[{law=\"neo-hooke\", young_MPa=60, "
         "poisson=0.45, "
         "density_kg_per_m3=" +
         density + "}]}'");

@@ -224,6 +224,39 @@ height_m = 11
   EXPECT_EQ(run(dir, text, "--strict").status, 3);
 }
 
+/// Balls that scatter most to the sides: the longer axis lies across.
+TEST(StudyAnswers, TheLongerAxisOfTheEllipseIsWhereItLies) {
+  const fs::path dir = fresh_directory("study_across");
+  const std::string text = std::regex_replace(study("figures = false\n", R"([sample]
+points = 40
+seed = 3
+[[axis]]
+key = "delivery.face_angle_deg"
+mean = 0
+sd = 3
+[landing]
+fairway_m = 30
+draws = 0
+[flight]
+units = "metres"
+)"),
+                                              std::regex("\"ball_speed_mps\""), "\"carry_m\", \"side_m\"");
+  const Outcome o = run(dir, text);
+  ASSERT_EQ(o.status, 0) << o.text;
+  const auto landing = summary(dir)["landing"]["rigid-eccentric"];
+  ASSERT_GT(landing["side_sd_m"].get<double>(), 2 * landing["carry_sd_m"].get<double>());
+  EXPECT_GT(landing["ellipse_length_m"].get<double>(), landing["ellipse_width_m"].get<double>());
+  std::smatch said;
+  ASSERT_TRUE(
+      std::regex_search(o.text, said,
+                        std::regex("The axes of the ellipse for 95 % are ([0-9]+) and ([0-9]+) m, the longer one "
+                                   "([0-9]+) deg from the target line\\.")))
+      << o.text;
+  EXPECT_GT(std::stod(said[1]), std::stod(said[2]));
+  EXPECT_GT(std::stod(said[3]), 60);
+  EXPECT_EQ(o.text.find(" m long"), std::string::npos) << o.text;
+}
+
 /// One table has one unit of length, that which was asked for.
 TEST(StudyAnswers, MapsOfOneTableHaveItsUnit) {
   const fs::path dir = fresh_directory("study_map_units");

@@ -400,6 +400,13 @@ TEST(Study, TwoShardsInTwoProcessesGiveTheBytesOfOne) {
   ASSERT_EQ(command("sweep merge " + out).status, 0);
   EXPECT_EQ(content(dir / "out" / "points.csv"), content(dir / "one" / "points.csv"));
   EXPECT_EQ(content(dir / "out" / "summary.json"), content(dir / "one" / "summary.json"));
+  // Of the page all but how it was made.
+  const auto page = [&](const char* of) {
+    const std::string text = content(dir / of / "report.html");
+    EXPECT_EQ(text.find("<pre class='command'>\n"), std::string::npos) << "no command";
+    return text.substr(0, text.find("<h2>The same again</h2>"));
+  };
+  EXPECT_EQ(page("out"), page("one"));
   // Another division of the work finds everything done.
   ASSERT_EQ(command("sweep run " + out + " --quiet --shard 3/5").status, 0);
   EXPECT_EQ(recorded(dir / "out").size(), 400u);
@@ -860,6 +867,44 @@ TEST(Study, AQuantityThatTheDesignVariesIsSetNowhereElse) {
   expect_refused(units, "are one quantity");
 }
 
+/// A table that is set as a whole leaves no key that was set in it before.
+TEST(Study, AWholeTableLeavesNothingOfWhatTheDesignVaries) {
+  const fs::path dir = fresh_directory("study_whole_table");
+  const auto check = [&](const std::string& design, const std::string& set = "") {
+    write(dir / "case.toml",
+          "kind = \"study\"\nmodels = [\"stick-slip\"]\noutputs = [\"ball_speed_mps\"]\n" + design + kCentredBlow);
+    return command("check " + dir.string() + (set.empty() ? "" : " --set '" + set + "'"));
+  };
+  const auto refused = [&](const std::string& design, const std::string& set, const std::string& says) {
+    expect_refused(check(design, set), says);
+  };
+  const std::string blow = "delivery={club_speed_mps=45, dynamic_loft_deg=14}";
+  const std::string light = "[[variant]]\nname = \"light\"\nset = [\"head.mass_kg=0.19\"]\n";
+  write(dir / "blows.csv", "delivery.attack_angle_deg\n1\n2\n");
+  const std::string rows = "rows.file = \"blows.csv\"\n";
+  refused(light, "head={mass_kg=0.2}", "'head.mass_kg' is varied by this study, and set to one value");
+  refused(rows, blow, "'delivery.attack_angle_deg' is varied by this study, and set to one value");
+  EXPECT_EQ(check(light, blow).status, 0) << check(light, blow).text;
+  // An axis is set after the table: what the table does not hold may be varied.
+  const auto axis = [](const std::string& key) {
+    return "[[axis]]\nkey = \"delivery." + key + "\"\nvalues = [4, 5]\n";
+  };
+  refused(axis("club_speed_mph"), blow, "'delivery.club_speed_mph' is varied by this study, and set to one value");
+  EXPECT_EQ(check(axis("attack_angle_deg"), blow).status, 0) << check(axis("attack_angle_deg"), blow).text;
+  const std::string whole = "[[variant]]\nname = \"whole\"\nset = [\"" + blow + "\"]\n";
+  refused(axis("club_speed_mph") + whole, "", "'delivery.club_speed_mps' is varied by this study twice");
+  EXPECT_EQ(check(axis("attack_angle_deg") + whole).status, 0) << check(axis("attack_angle_deg") + whole).text;
+  refused("[[variant]]\nname = \"v\"\nset = [\"delivery.club_speed_mps=40\", \"" + blow + "\"]\n", "",
+          "gives one quantity twice");
+  refused(whole +
+              "[[solve]]\nname = \"loft\"\nkey = \"delivery.dynamic_loft_deg\"\nrange = [5, 20]\n"
+              "output = \"launch_angle_deg\"\nvalue = 10\n",
+          "", "is sought, and 'delivery.dynamic_loft_deg' is varied");
+  refused("[[variant]]\nname = \"v\"\nset = [\"ball.model='tour'\"]\n",
+          "ball.layers=[{law=\"neo-hooke\", young_MPa=60, poisson=0.45, density_kg_per_m3=1130}]",
+          "'ball.model' is varied by this study");
+}
+
 TEST(Study, WhatIsMeasuredIsAnOutput) {
   const fs::path dir = fresh_directory("study_measured");
   const auto refused = [&](const std::string& text) {
@@ -1174,6 +1219,42 @@ TEST(Study, AKeySweptTwiceIsRefused) {
         sweep_case("sweep_twice", kSample + "[[axis]]\nkey = \"delivery." + again + "\"\nrange = [40.0, 45.0]\n");
     const Outcome o = command("check " + (dir / "sweep").string());
     expect_refused(o, "'delivery.club_speed_mps' is an axis already");
+  }
+}
+
+/// Two of one name, or one that the table has for something else, would end as a broken table at the last point.
+TEST(Study, EveryColumnOfThePointsHasANameOfItsOwn) {
+  const fs::path dir = fresh_directory("study_columns");
+  const auto check = [&](const std::string& design) {
+    write(dir / "case.toml",
+          "kind = \"study\"\nmodels = [\"stick-slip\"]\noutputs = [\"ball_speed_mps\"]\n" + design + kCentredBlow);
+    return command("check " + dir.string());
+  };
+  const auto axis = [](const std::string& name, const std::string& key) {
+    return "[[axis]]\nname = \"" + name + "\"\nkey = \"delivery." + key + "\"\nvalues = [1, 2]\n";
+  };
+  ASSERT_EQ(check(axis("x", "attack_angle_deg") + axis("y", "club_path_deg")).status, 0);
+  const std::string says = " is another column of points.csv";
+  expect_refused(check(axis("x", "attack_angle_deg") + axis("x", "club_path_deg")),
+                 "case.toml:9: axis[2].name: 'x'" + says);
+  expect_refused(check("[[variant]]\nname = \"v\"\nset = []\n" + axis("variant", "attack_angle_deg")), says);
+  for (const char* name : {"model", "point", "error"}) expect_refused(check(axis(name, "attack_angle_deg")), says);
+  expect_refused(check(axis("ball_speed_mps", "attack_angle_deg")), "is a column of the design too");
+  for (const char* name : {"error", "doubts", "launch", "history", "hosel", "heavier", "skipped", "point", "model"})
+    expect_refused(check(axis("x", "attack_angle_deg") + "[[solve]]\nname = \"" + name +
+                         "\"\nkey = \"delivery.dynamic_loft_deg\"\nrange = [5, 20]\n"
+                         "output = \"launch_angle_deg\"\nvalue = 10\n"),
+                   "case.toml:9: solve[1].name: '" + std::string(name) + "' is something else of every point");
+}
+
+TEST(Study, ARangeHasTwoEnds) {
+  const fs::path dir = fresh_directory("study_range");
+  for (const std::string more : {"count = 3\n", "[sample]\npoints = 4\nseed = 1\n"}) {
+    write(dir / "case.toml",
+          "kind = \"study\"\nmodels = [\"stick-slip\"]\noutputs = [\"ball_speed_mps\"]\n[[axis]]\n"
+          "key = \"delivery.attack_angle_deg\"\nrange = [5, 5]\n" +
+              more + kCentredBlow);
+    expect_refused(command("check " + dir.string()), "axis[1].range: both ends are the same");
   }
 }
 
