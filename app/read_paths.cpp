@@ -9,6 +9,7 @@
 
 #include "app/read_flight.hpp"
 #include "app/read_sheet.hpp"
+#include "post/labels.hpp"
 
 namespace hosel::app {
 namespace {
@@ -72,6 +73,13 @@ bool held_out(const std::string& player) {
   std::uint32_t hash = 2166136261U;
   for (const char c : player) hash = (hash ^ static_cast<unsigned char>(c)) * 16777619U;
   return hash & 1U;
+}
+
+std::vector<std::string> RadarPaths::not_used() const {
+  std::vector<std::string> out;
+  for (const auto& [reason, rows] : left_out)
+    out.push_back(fmt::format("{} {}: not used", post::counted(std::size_t(rows), "row"), reason));
+  return out;
 }
 
 std::vector<models::MeasuredPath> RadarPaths::paths(bool held) const {
@@ -153,6 +161,7 @@ RadarPaths read_paths(Table table, const Ball& ball) {
     // x to the target, y up, z to the right.
     const Vec3 velocity(px.c[1], -pz.c[1], py.c[1]);
     RadarFlight f{.path = {.id = fmt::format("row {}", sheet.lines[i]), .launch = {}, .air = air->second, .sd = own},
+                  .line = sheet.lines[i],
                   .player = player[i],
                   .held_out = held_out(player[i]),
                   .spin_tracked = is_tracked,

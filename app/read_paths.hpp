@@ -15,6 +15,7 @@ namespace hosel::app {
 /// One followed flight: what enters the fit, and what the radar made of it at launch level.
 struct RadarFlight {
   models::MeasuredPath path;
+  std::size_t line = 0;  ///< in the file
   std::string player, group;
   bool held_out = false;
   bool spin_tracked = false;                       ///< else estimated by the radar
@@ -28,6 +29,7 @@ struct RadarPaths {
   models::PathModel model;
   std::filesystem::path missing;  ///< not empty: the file is not on this machine, and nothing else is here
 
+  std::vector<std::string> not_used() const;  ///< a sentence for each reason
   std::vector<models::MeasuredPath> paths(bool held_out) const;
   std::vector<const RadarFlight*> flights_of(bool held_out) const;
 };

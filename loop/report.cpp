@@ -104,10 +104,12 @@ json to_json(const LoopResult& r) {
   out["flagged_rows"] = each(r.flagged, [](const Flag& f) {
     // A shot number is a number, whatever the file calls a shot else is text.
     const bool number = !f.id.empty() && f.id.size() < 10 && f.id.find_first_not_of("0123456789") == std::string::npos;
-    return json{{"shot", number ? json(std::stoi(f.id)) : json(f.id)},
-                {"column", f.column},
-                {"reason", f.reason},
-                {"finding", f.finding}};
+    json told{{"shot", number ? json(std::stoi(f.id)) : json(f.id)},
+              {"column", f.column},
+              {"reason", f.reason},
+              {"finding", f.finding}};
+    if (f.line) told["line"] = *f.line;
+    return told;
   });
   out["channels"] = each(r.channels, [](const ChannelResult& c) {
     return json{{"name", c.name},

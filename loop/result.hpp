@@ -40,8 +40,9 @@ struct ChannelResult {
 
 /// A row that is not used, since nothing explains it.
 struct Flag {
-  int row;         ///< of the file
-  std::string id;  ///< what the file calls it
+  int row;                          ///< of the table
+  std::optional<std::size_t> line;  ///< in the file; absent in a record of a bench test
+  std::string id;                   ///< what the file calls it
   std::string column, reason;
   int finding;  ///< rows of one cause share it
 };

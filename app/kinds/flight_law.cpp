@@ -89,7 +89,7 @@ class FlightLawJob final : public Job {
       throw InputError("[paths]: no shot to learn from, or none of a player left out");
     out.say(fmt::format("{} shots to learn from, {} of players left out, {} groups", training.size(), held.size(),
                         data_.groups.size()));
-    for (const auto& [reason, rows] : data_.left_out) out.say(fmt::format("  {} rows {}: not used", rows, reason));
+    for (const std::string& rows : data_.not_used()) out.say("  " + rows);
 
     const int groups = int(data_.groups.size());
     PathFit found = models::fit_paths(training, groups, data_.model, start_, law_sd_);

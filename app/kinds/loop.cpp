@@ -141,8 +141,8 @@ class LoopJob final : public Job {
     offer_corrected(out, case_, result, fe_.get(), words_);
     report_loop(out, result, case_.shots, "rows", [&] {
       if (!landings_) return;
-      std::set<std::string> flagged;
-      for (const loop::Flag& f : result.flagged) flagged.insert(f.id);
+      // A mean is no shot of a file.
+      const auto flagged = case_.averages ? std::set<std::size_t>{} : flagged_rows(result.flagged, *landings_);
       show_landings(out, *landings_, flagged, case_.blow.ball, case_.flight.value_or(models::FlightConditions{}),
                     mirrored_);
     });

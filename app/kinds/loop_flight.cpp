@@ -14,6 +14,7 @@
 #include "app/read_paths.hpp"
 #include "app/read_sheet.hpp"
 #include "loop/flights/problem.hpp"
+#include "post/labels.hpp"
 
 namespace hosel::app {
 namespace {
@@ -47,6 +48,7 @@ class LoopFlightJob final : public Job {
   void run(Output& out) override {
     if (!skipped_.empty()) return out.skip(skipped_);
     if (const std::string repeated = repeated_rows(case_.shots); !repeated.empty()) out.lack(repeated);
+    for (const std::string& note : case_.notes) out.say(note);
     const loop::LoopResult result = run_loop(out, case_);
     report_loop(out, result, case_.shots, "flights");
     for (const std::string& note : result.notes)
@@ -54,6 +56,14 @@ class LoopFlightJob final : public Job {
   }
 
  private:
+  /// Of [data.paths].
+  struct Position {
+    std::size_t line;
+    double time;
+    std::array<double, 3> x;
+  };
+  using Paths = std::map<std::string, std::vector<Position>>;  // by shot, by rising time
+
   void read_unknown(Table t) {
     loop::FlightUnknowns& u = case_.unknown;
     u.axis = t.quantity({"spin_axis", "standard deviation of a spin's tilt that is not recorded"}, "deg", {0, kPi / 2},
@@ -86,7 +96,10 @@ class LoopFlightJob final : public Job {
     }
     if (!std::filesystem::exists(path)) skipped_ = path;
     if (skipped_.empty()) try {
-        case_.shots = loop::read_shots(post::read_csv(path), true);
+        const post::Sheet sheet = post::read_csv(path);
+        const Paths paths = points.empty() ? Paths{} : read_positions(points);
+        case_.shots = loop::read_shots(sheet, true, cells_of_paths(paths));
+        if (!points.empty()) place_positions(paths, points, loop::ids_of(sheet));
         for (const std::string& rows : implausible_rows(case_.shots)) data.doubt(rows);
       } catch (const DataError& e) { throw InputError(e.what()); }
     for (const std::string& name : case_.group_by)
@@ -95,11 +108,10 @@ class LoopFlightJob final : public Job {
     if (auto noise = data.optional_table("noise"))
       case_.noise =
           read_noise(*noise, skipped_.empty() ? &case_.shots : nullptr, loop::Role::output, "launch or flight");
-    if (!points.empty() && skipped_.empty()) read_points(points);
   }
 
   /// Every instant that some shot has is a channel for each axis.
-  void read_points(const std::filesystem::path& file) {
+  Paths read_positions(const std::filesystem::path& file) {
     const post::Sheet sheet = read_sheet(file);
     const auto& ids = cells_of(sheet, "shot");
     const std::vector<double> time = column_with_gaps(sheet, "time_s");
@@ -116,19 +128,55 @@ class LoopFlightJob final : public Job {
     std::ranges::sort(instants);
     for (const double t : instants)
       for (int axis = 0; axis < 3; ++axis) case_.points.push_back({axis, t});
-    case_.positions = Eigen::MatrixXd::Constant(Eigen::Index(case_.shots.rows()), Eigen::Index(case_.points.size()),
-                                                std::numeric_limits<double>::quiet_NaN());
     std::array<std::vector<double>, 3> x;
     for (std::size_t axis = 0; axis < 3; ++axis) x[axis] = column_with_gaps(sheet, kAxes[axis]);
-    for (std::size_t i = 0; i < ids.size(); ++i) {
-      const auto row = std::ranges::find(case_.shots.id, ids[i]);
-      if (row == case_.shots.id.end())
-        throw InputError(
-            fmt::format("{}:{}: no shot '{}' in {}", sheet.file, sheet.lines[i], ids[i], case_.shots.file));
-      const auto k = std::ranges::find(instants, time[i]) - instants.begin();
-      for (std::size_t axis = 0; axis < 3; ++axis)
-        case_.positions(row - case_.shots.id.begin(), 3 * k + Eigen::Index(axis)) = x[axis][i];
+    Paths paths;
+    for (std::size_t i = 0; i < ids.size(); ++i)
+      paths[ids[i]].push_back({sheet.lines[i], time[i], {x[0][i], x[1][i], x[2][i]}});
+    for (auto& [id, path] : paths) std::ranges::stable_sort(path, {}, &Position::time);
+    return paths;
+  }
+
+  /// By value: two files may write one number in two ways.
+  static std::map<std::string, std::vector<std::string>> cells_of_paths(const Paths& paths) {
+    std::map<std::string, std::vector<std::string>> cells;
+    for (const auto& [id, path] : paths)
+      for (const Position& p : path)
+        for (const double value : {p.time, p.x[0], p.x[1], p.x[2]}) cells[id].push_back(fmt::format("{}", value));
+    return cells;
+  }
+
+  /// `ids`: of all rows of the shots' file, copies too.
+  void place_positions(const Paths& paths, const std::filesystem::path& file, const std::vector<std::string>& ids) {
+    const loop::Shots& shots = case_.shots;
+    case_.positions = Eigen::MatrixXd::Constant(Eigen::Index(shots.rows()), Eigen::Index(case_.points.size()),
+                                                std::numeric_limits<double>::quiet_NaN());
+    std::size_t of_copies = 0;
+    for (const auto& [id, path] : paths) {
+      const auto fail = [&](const Position& p, const std::string& why) {
+        throw InputError(fmt::format("{}:{}: {}", file.string(), p.line, why));
+      };
+      const auto count = std::ranges::count(shots.id, id);
+      if (count > 1)
+        fail(path.front(), fmt::format("shot '{}' stands {} times in {}: number them anew", id, count, shots.file));
+      if (count == 0 && !std::ranges::count(ids, id))
+        fail(path.front(), fmt::format("no shot '{}' in {}", id, shots.file));
+      for (std::size_t k = 1; k < path.size(); ++k)
+        if (path[k].time == path[k - 1].time)
+          fail(path[k], fmt::format("shot '{}' has a position at {:g} s already", id, path[k].time));
+      if (count == 0) {
+        of_copies += path.size();
+        continue;
+      }
+      const auto row = std::ranges::find(shots.id, id) - shots.id.begin();
+      for (const Position& p : path)
+        for (Eigen::Index c = 0; c < case_.positions.cols(); ++c)
+          if (const loop::PathPoint& at = case_.points[std::size_t(c)]; at.time == p.time)
+            case_.positions(row, c) = p.x[std::size_t(at.axis)];
     }
+    if (of_copies > 0)
+      case_.notes.push_back(
+          fmt::format("{} of shots that repeat an earlier one: not used", post::counted(of_copies, "position")));
   }
 
   void read_radar(Table& root) {
@@ -152,6 +200,7 @@ class LoopFlightJob final : public Job {
       skipped_ = data.missing;
       return;
     }
+    case_.notes = data.not_used();
     case_.noise = std::move(noise);
     case_.group_by = {"group"};
     case_.unknown.wind = data.model.wind_sd;
@@ -175,14 +224,20 @@ class LoopFlightJob final : public Job {
       if (what == "ends")
         for (const double x : {f.carry, f.side, f.apex, f.time}) cells.push_back(text(x));
       for (std::size_t c = 0; c < cells.size(); ++c) sheet.columns[c].push_back(cells[c]);
-      sheet.lines.push_back(sheet.lines.size() + 2);
+      sheet.lines.push_back(f.line);
     }
     case_.shots = loop::read_shots(sheet, true);
     std::vector<const models::MeasuredPath*> flights;  // of the rows that are left: copies are not
+    loop::Column& group = *case_.shots.find("group");  // a name even where it is written as a number
+    group.numeric = false;
+    group.value.clear();
+    group.text.clear();
     for (const std::size_t line : case_.shots.line) {
-      flights.push_back(&data.flights[line - 2].path);
-      case_.air.push_back(flights.back()->air);
-      case_.deviations.push_back(flights.back()->sd);
+      const RadarFlight& f = *std::ranges::find(data.flights, line, &RadarFlight::line);
+      flights.push_back(&f.path);
+      group.text.push_back(f.group);
+      case_.air.push_back(f.path.air);
+      case_.deviations.push_back(f.path.sd);
     }
     if (what == "ends") return;
     case_.position_noise = data.model.noise;

@@ -33,7 +33,17 @@ std::string spread(const std::vector<double>& values, double unit, int digits) {
 
 }  // namespace
 
-void show_landings(Output& out, const loop::Shots& shots, const std::set<std::string>& left_out, const Ball& ball,
+std::set<std::size_t> flagged_rows(const std::vector<loop::Flag>& flagged, const loop::Shots& shots) {
+  std::set<std::size_t> rows;
+  for (const loop::Flag& f : flagged) {
+    const bool shared = std::ranges::count(shots.id, f.id) > 1;
+    for (std::size_t i = 0; i < shots.rows(); ++i)
+      if (shots.id[i] == f.id && (!shared || shots.line[i] == f.line)) rows.insert(i);
+  }
+  return rows;
+}
+
+void show_landings(Output& out, const loop::Shots& shots, const std::set<std::size_t>& left_out, const Ball& ball,
                    const models::FlightConditions& conditions, bool mirrored) {
   const loop::Column *clubs = shots.find("club"), *speed = shots.find_stem("ball_speed"),
                      *angle = shots.find_stem("launch_angle"), *spin = shots.find_stem("spin_rate");
@@ -52,7 +62,7 @@ void show_landings(Output& out, const loop::Shots& shots, const std::set<std::st
   landings.in_files({"shot", "club", "carry_" + unit, "side_" + unit}, "{:.2f}");
   std::size_t without = 0;
   for (std::size_t i = 0; i < shots.rows(); ++i) {
-    if (left_out.contains(shots.id[i])) {
+    if (left_out.contains(i)) {
       ++without;
       continue;
     }

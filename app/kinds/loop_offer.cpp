@@ -137,8 +137,7 @@ Offer told_of(const loop::ShotCase& c, const loop::LoopResult& r, const std::vec
   // Rows that the loop set aside are not what the entry saw.
   std::vector<Shot> used;
   for (std::size_t i = 0; i < shots.size(); ++i)
-    if (std::ranges::find(r.rows, c.shots.id[std::size_t(row_of[i])], &loop::UsedRow::id) != r.rows.end())
-      used.push_back(shots[i]);
+    if (std::ranges::find(r.rows, row_of[i], &loop::UsedRow::row) != r.rows.end()) used.push_back(shots[i]);
   const Use use = range_of_shots(used.empty() ? shots : used, 0);
   o.seen = {.impact_speed = use.impact_speed, .spin_loft = use.spin_loft, .clubs = {}, .not_for = {}};
   if (const loop::Column* club = loop::as_read(c).find_stem("club"); club && !club->numeric)

@@ -217,6 +217,7 @@ class TuneJob final : public Job {
         if (input != Input::head_mass || !tuned("head_mass")) inputs.emplace_back(input, c);
     }
     tell_absent(out, shots);
+    for (const TuneChannel& c : channels_) check_column(c, shots);
     const auto measured = [&](const TuneChannel& c, std::size_t row) {
       if (const loop::Column* column = shots.find_stem(c.channel.name)) return column->value[row];
       const loop::Column *rate = shots.find_stem("spin_rate"), *axis = shots.find_stem("spin_axis");
@@ -261,6 +262,21 @@ class TuneJob final : public Job {
     test_.assign(order.begin() + std::ptrdiff_t(cut), order.end());
     left_out_ = left_out;
     for (const auto& [why, n] : left_out) out.say(fmt::format("{} rows left out: {}", n, why));
+  }
+
+  /// Throws InputError where the column of a channel has no unit of the channel's, or holds a word.
+  void check_column(const TuneChannel& c, const loop::Shots& shots) const {
+    const loop::Column* column = shots.find_stem(c.channel.name);
+    if (!column) return;
+    const Dimension needed = split_unit(fmt::format("x_{}", c.channel.unit)).unit->dimension;
+    const SplitName split = split_unit(column->name);
+    if (!split.unit || split.unit->dimension != needed)
+      throw InputError(
+          fmt::format("{}:1: column '{}' needs a unit of {}", shots_file_.string(), column->name, name(needed)));
+    for (std::size_t row = 0; row < column->text.size(); ++row)
+      if (const std::string& cell = column->text[row]; !cell.empty() && !post::number(cell))
+        throw InputError(fmt::format("{}:{}: column '{}': '{}' is not a number", shots_file_.string(), shots.line[row],
+                                     column->name, cell));
   }
 
   /// Without speed and loft there is no blow; every other input that no column says is zero, or the head's own mass.

@@ -20,6 +20,29 @@
 
 namespace hosel::app {
 
+namespace {
+
+/// A quantity of the launch as a row records it, or as it follows from what the row records [SI]. A missing tilt,
+/// sidespin or azimuth is no zero.
+std::optional<double> quantity_of_row(const loop::Shots& shots, std::size_t row, std::string_view name) {
+  const auto output = output_of(name);
+  if (!output) return {};  // rifle spin: no monitor sees it
+  const auto read = [&](hosel::Output o) { return loop::recorded(shots, row, o); };
+  if (const auto x = read(*output)) return x;
+  const auto rate = read(hosel::Output::spin_rate), tilt = read(hosel::Output::spin_axis),
+             back = read(hosel::Output::backspin), side = read(hosel::Output::sidespin);
+  const bool polar = rate && tilt, components = back && side;
+  switch (*output) {
+    case hosel::Output::backspin: return polar ? std::optional(*rate * std::cos(*tilt)) : std::nullopt;
+    case hosel::Output::sidespin: return polar ? std::optional(*rate * std::sin(*tilt)) : std::nullopt;
+    case hosel::Output::spin_rate: return components ? std::optional(std::hypot(*back, *side)) : std::nullopt;
+    case hosel::Output::spin_axis: return components ? std::optional(std::atan2(*side, *back)) : std::nullopt;
+    default: return {};
+  }
+}
+
+}  // namespace
+
 std::optional<StudyRegression> read_regression(Table root) {
   auto t = root.optional_table("regression");
   if (!t) return {};
@@ -54,22 +77,29 @@ std::optional<StudyRegression> read_regression(Table root) {
   r.repeated = repeated_rows(shots);
   std::vector<const loop::Column*> needed;
   for (const std::string& name : r.on) needed.push_back(shots.find_stem(split_unit(name).stem));
-  for (const std::string& name : r.of)
-    if (split_unit(name).stem == "azimuth") needed.push_back(shots.find_stem("azimuth"));
   if (!std::ranges::all_of(needed, [](const loop::Column* c) { return c && c->numeric; }))
-    t->fail("shots", "a column of `on`, or azimuth, is not there or holds no numbers");
+    t->fail("shots", "a column of `on` is not there or holds no numbers");
   r.x.resize(r.on.size());
   r.y.resize(r.of.size());
+  std::vector<std::size_t> readable(r.of.size(), 0);  // rows
   for (std::size_t row = 0; row < shots.rows(); ++row) {
     const long number = std::strtol(shots.id[row].c_str(), nullptr, 10);
     if (number < first || number > last) continue;
     ++r.rows;
-    const std::optional<Launch> launch = loop::seen_launch(shots, row);
-    if (!launch || !std::ranges::all_of(needed, [&](const auto* c) { return std::isfinite(c->value[row]); })) continue;
+    std::vector<std::optional<double>> y;
+    for (std::size_t q = 0; q < r.of.size(); ++q) {
+      y.push_back(quantity_of_row(shots, row, split_unit(r.of[q]).stem));
+      readable[q] += y.back().has_value();
+    }
+    if (!loop::seen_launch(shots, row) || !std::ranges::all_of(y, [](const auto& x) { return x.has_value(); }) ||
+        !std::ranges::all_of(needed, [&](const auto* c) { return std::isfinite(c->value[row]); }))
+      continue;
     for (std::size_t k = 0; k < r.on.size(); ++k) r.x[k].push_back(needed[k]->value[row] / on_unit[k]);
-    for (std::size_t q = 0; q < r.of.size(); ++q)
-      r.y[q].push_back(((*launch).*post::find_channel(split_unit(r.of[q]).stem)->value)() / of_unit[q]);
+    for (std::size_t q = 0; q < r.of.size(); ++q) r.y[q].push_back(*y[q] / of_unit[q]);
   }
+  for (std::size_t q = 0; q < r.of.size() && r.rows > 0; ++q)
+    if (readable[q] == 0)
+      t->fail("of", fmt::format("'{}': no row of {} records it, or what it follows from", r.of[q], r.file.string()));
   const std::size_t least = 4 * (1 + r.on.size());  // four for every unknown
   if (r.y.empty() || r.y.front().size() < least)
     t->fail("shots", fmt::format("a regression on {} inputs needs {} whole rows, and a quantity", r.on.size(), least));

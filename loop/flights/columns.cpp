@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <tuple>
 
 #include "golf/data_error.hpp"
@@ -129,7 +130,6 @@ FlightColumns::FlightColumns(const FlightCase& c, const std::vector<int>& usable
   for (const Column& column : given_.shots.columns)
     if (column.numeric && column.role == Role::output && output_of(column.stem)) columns_.push_back(&column);
   problem_.emplace(case_, FlightProblem::About::record);
-  if (problem_->too_few()) return;
   forms_ = problem_->forms();
   const auto others = std::ranges::stable_partition(
       forms_, [&](const Parametrisation& f) { return std::ranges::count(case_.effects, f.effect) > 0; });
@@ -200,6 +200,7 @@ void FlightColumns::try_constants() {
     FlightCase right = case_;
     double density = 0;
     bool launch = false;
+    std::map<std::string, double> scaled;  // readings
     for (const auto& [column, other] : {std::pair{slip.column, slip.second}, {slip.second, slip.column}}) {
       if (column < 0) continue;
       const Column& recorded = *columns_[std::size_t(column)];
@@ -211,19 +212,27 @@ void FlightColumns::try_constants() {
       launch = launch || !shown;
       // The density of the written numbers. Beside a declared noise a wider one earns nothing: it is no evidence.
       const double per_reading = std::log(std::abs(slip.factor));
-      if (shown)
-        density += double(read.size()) *
-                   (case_.noise.contains(recorded.name) ? std::min(0.0, per_reading) : per_reading);
+      if (!shown) continue;
+      scaled[recorded.name] = std::abs(slip.factor);
+      density += double(problem_->measured().col(channel_of(recorded)).array().isFinite().count()) *
+                 (case_.noise.contains(recorded.name) ? std::min(0.0, per_reading) : per_reading);
     }
     try {
-      const FlightProblem problem = launch ? FlightProblem(right, FlightProblem::About::record)
-                                           : problem_->with_readings(right);
+      FlightProblem problem = launch ? FlightProblem(right, FlightProblem::About::record)
+                                     : problem_->with_readings(right);
+      problem.hold_noise(*problem_, scaled);
       const bool anew = launch || (problem.noise() != problem_->noise()).any();
       slip.deviance = deviance(problem, anew ? by_effects(problem) : by_effects_, case_.rules.further_gain) -
                       2 * density;
     } catch (const DataError&) {}  // no launch is left, or no flight
   });
   std::ranges::move(all, std::back_inserter(slips_));
+}
+
+int FlightColumns::channel_of(const Column& column) const {
+  int c = 0;
+  while (problem_->channel(c).name != column.name) ++c;
+  return c;
 }
 
 /// Whether the launch is taken from this column: not where the spin is recorded by its components.
@@ -248,8 +257,7 @@ void FlightColumns::try_sizes() {
     const bool share = slip.finding == "scale", shown = of_flight(output);
     Parametrisation form;
     if (shown) {
-      int c = 0;
-      while (problem_->channel(c).name != column.name) ++c;
+      const int c = channel_of(column);
       std::vector<double> off;
       for (Eigen::Index i = 0; i < r.rows(); ++i)
         if (const double y = problem_->measured()(i, c); std::isfinite(y) && r(i, c) + y != 0)

@@ -8,7 +8,8 @@ namespace hosel::loop {
 
 /// Every slip of whole columns is tried on some of the flights, evenly spread. What is unknown of a shot and of its
 /// group is integrated out about zero, and the likeliest effect stands beside it, whatever a slip says. Slips compete
-/// by a deviance whose tail is logarithmic, so that a slip is seen however gross it is.
+/// by a deviance whose tail is logarithmic, so that a slip is seen however gross it is. Noise that is not declared is
+/// that of the columns as recorded.
 class FlightColumns {
  public:
   /// `usable`: rows of the file that hold a flight.
@@ -33,6 +34,7 @@ class FlightColumns {
   double deviance(const FlightProblem& problem, const Eigen::MatrixXd& by_effects, double price) const;
   Eigen::MatrixXd by_effects(const FlightProblem& problem) const;
   bool reads_launch(Output output) const;
+  int channel_of(const Column& column) const;  ///< of a reading of the flight
   double library(const std::vector<const Fit*>& rivals) const;
   std::vector<WrongColumn> judged(double library) const;
 

@@ -52,11 +52,23 @@ FlightProblem FlightProblem::with_readings(const FlightCase& c) const {
   for (int k = 0; k < width(); ++k)
     if (readings_[std::size_t(k)].answer >= 0)
       for (std::size_t i = 0; i < trials_.size(); ++i)
-        other.measured_(Eigen::Index(i), k) = c.shots.find(channel(k).name)->native(std::size_t(trials_[i].row));
-  other.estimate_noise(nullptr);
-  other.train_blocks_ = other.blocks(train_);
-  other.held_blocks_ = other.blocks(holdout_);
+        if (double& y = other.measured_(Eigen::Index(i), k); std::isfinite(y))
+          y = c.shots.find(channel(k).name)->native(std::size_t(trials_[i].row));
   return other;
+}
+
+void FlightProblem::hold_noise(const FlightProblem& as, const std::map<std::string, double>& factors) {
+  for (int k = 0; k < width(); ++k) {
+    Channel& ch = channels_[std::size_t(k)];
+    const auto factor = factors.find(ch.name);
+    if (!ch.trusted()) ch.noise = as.channel(k).noise * (factor == factors.end() ? 1 : factor->second);
+  }
+  train_blocks_ = blocks(train_);
+  held_blocks_ = blocks(holdout_);
+}
+
+bool FlightProblem::Reading::aside() const {
+  return answer >= 0 ? answer == flight_answer(Output::side) : point.axis != 2;
 }
 
 std::vector<Parametrisation> FlightProblem::forms() const {
@@ -95,10 +107,7 @@ void FlightProblem::read() {
                ? std::hypot(case_.noise.at(c->name) * c->si, rounding_deviation(c->resolution))
                : 0.0;
   };
-  const auto has = [&](Output o, std::size_t row) {
-    const Column* c = shots.find_stem(stem(o));
-    return c && c->numeric && std::isfinite(c->value[row]);
-  };
+  const auto has = [&](Output o, std::size_t row) { return recorded(shots, row, o).has_value(); };
   std::vector<int> rows(shots.rows());
   std::iota(rows.begin(), rows.end(), 0);
   const std::vector<double> order = session_order(shots, rows);
@@ -112,7 +121,8 @@ void FlightProblem::read() {
     sd[models::kOwnSpeed] = noise_of(Output::ball_speed);
     sd[models::kOwnAngle] = noise_of(Output::launch_angle);
     sd[models::kOwnAzimuth] = noise_of(Output::azimuth);
-    const bool components = has(Output::backspin, row), rate = has(Output::spin_rate, row) || components;
+    const bool components = has(Output::backspin, row) && (has(Output::sidespin, row) || !has(Output::spin_rate, row)),
+               rate = has(Output::spin_rate, row) || components;
     const bool axis = (components && has(Output::sidespin, row)) || has(Output::spin_axis, row);
     if (!has(Output::ball_speed, row) || !has(Output::launch_angle, row)) {
       ++unused_["no launch"];
@@ -126,7 +136,7 @@ void FlightProblem::read() {
     if (seen) {
       t.shot.launch = *seen;
     } else {
-      const auto value = [&](Output o) { return has(o, row) ? shots.find_stem(stem(o))->value[row] : 0.0; };
+      const auto value = [&](Output o) { return recorded(shots, row, o).value_or(0); };
       const double tilt = value(Output::spin_axis);
       t.shot.launch.velocity = value(Output::ball_speed) *
                                direction(value(Output::launch_angle), value(Output::azimuth));
@@ -152,7 +162,7 @@ void FlightProblem::read() {
       group += (group.empty() ? "" : "/") + (c->numeric ? fmt::format("{:.12g}", c->native(row)) : c->text[row]);
     }
     Eigen::VectorXd y(width());
-    bool any = false;
+    bool any = false, unaimed = false;
     for (int c = 0; c < width(); ++c) {
       const Reading& r = readings_[std::size_t(c)];
       if (r.answer >= 0) {
@@ -161,8 +171,10 @@ void FlightProblem::read() {
       } else {
         y[c] = case_.positions(Eigen::Index(row), c - Eigen::Index(channels_.size() - case_.points.size()));
       }
+      if (std::isfinite(y[c]) && r.aside() && !has(Output::azimuth, row)) y[c] = kNaN, unaimed = true;
       any = any || std::isfinite(y[c]);
     }
+    unaimed_ += unaimed;
     if (!any) {
       ++unused_["no reading of the flight"];
       continue;
@@ -450,9 +462,17 @@ std::vector<Problem::Row> FlightProblem::rows() const {
 
 std::vector<std::string> FlightProblem::notes() const {
   std::vector<std::string> all;
-  for (std::size_t g = 0; g < groups_.size() && case_.unknown.wind > 0; ++g)
+  if (unaimed_ > 0)
+    all.push_back(
+        fmt::format("{} {} no azimuth: what hangs on the direction of the launch (side, along and right of a path) is "
+                    "not judged there",
+                    unaimed_, unaimed_ == 1 ? "row has" : "rows have"));
+  if (!(case_.unknown.wind > 0)) return all;
+  for (const int k : groups_with_flights()) {
+    const auto g = std::size_t(k);
     all.push_back(fmt::format("wind{}: {:+.1f} m/s along, {:+.1f} m/s to the right, under the model that is told",
                               groups_[g].empty() ? "" : " of " + groups_[g], group_[g][0], group_[g][1]));
+  }
   return all;
 }
 
@@ -597,14 +617,18 @@ std::vector<Location> FlightProblem::places(const Selection& selection) const {
   return all;
 }
 
+std::set<int> FlightProblem::groups_with_flights() const {
+  std::set<int> all;
+  for (const auto* of : {&train_, &holdout_})
+    for (const int i : *of) all.insert(trials_[std::size_t(i)].shot.group);
+  return all;
+}
+
 /// Winds of the groups that are beyond what is declared of them.
 std::optional<Location> FlightProblem::wide_winds() const {
   const double sd = case_.unknown.wind;
-  std::set<int> with_flights;
-  for (const auto* of : {&train_, &holdout_})
-    for (const int i : *of) with_flights.insert(trials_[std::size_t(i)].shot.group);
   double square = 0, count = 0;
-  for (const int g : with_flights) square += group_[std::size_t(g)].head<2>().squaredNorm(), count += 2;
+  for (const int g : groups_with_flights()) square += group_[std::size_t(g)].head<2>().squaredNorm(), count += 2;
   if (!(sd > 0) || !(count > 0) ||
       square < sd * sd * boost::math::quantile(boost::math::complement(boost::math::chi_squared(count), kByChance)))
     return {};
@@ -680,16 +704,17 @@ LoopResult run(const FlightCase& c) {
   std::vector<int> usable;
   for (const Problem::Row& row : problem.rows()) usable.push_back(row.row);
   std::ranges::sort(usable);
-  const FlightColumns columns(c, usable);
-  result.columns = columns.beyond_every_name();
+  std::optional<FlightColumns> columns;
+  if (!problem.too_few()) columns.emplace(c, usable);
+  if (columns) result.columns = columns->beyond_every_name();
   if (!result.columns.empty())
     std::erase_if(result.forms, [&](const Parametrisation& f) { return !std::ranges::count(c.effects, f.effect); });
   const Study study(problem, result.forms, c.effects, c.rules, c.told);
-  if (result.columns.empty()) {
+  if (columns && result.columns.empty()) {
     std::vector<const Fit*> rivals{&study.selection.chosen, &study.selection.richest};
     for (const Candidate& candidate : study.selection.candidates) rivals.push_back(&candidate.fit);
     if (rivals.size() > kRivals) rivals.resize(kRivals);
-    result.columns = columns.contradicted(rivals);
+    result.columns = columns->contradicted(rivals);
   }
   conclude(study, result);
   return result;

@@ -23,7 +23,11 @@ class FlightProblem final : public Problem {
   explicit FlightProblem(const FlightCase& c, About about = About::likeliest);
 
   /// The same launches with the readings of another case, whose rows are the same; it refers to this problem's case.
+  /// `hold_noise` has to follow.
   FlightProblem with_readings(const FlightCase& c) const;
+  /// Noise that is not declared is that of a problem with the same channels, times the factor of a channel, by name:
+  /// that of a few readings would be the less the better they happen to fit.
+  void hold_noise(const FlightProblem& as, const std::map<std::string, double>& factors);
 
   /// Every form that acts on a flight alone.
   std::vector<Parametrisation> forms() const;
@@ -68,6 +72,8 @@ class FlightProblem final : public Problem {
   struct Reading {
     int answer = -1;  ///< FlightAnswer, or
     PathPoint point{0, 0};
+
+    bool aside() const;  ///< it hangs on the direction of the launch
   };
   struct Trial {
     models::MeasuredPath shot;  ///< launch, air, group, deviations of the unknowns
@@ -103,6 +109,7 @@ class FlightProblem final : public Problem {
   Eigen::VectorXd whiten(Part part, const Eigen::MatrixXd& e) const;
   std::optional<std::pair<std::string, std::string>> slip_of(int trial, const Fit& at) const;
   std::optional<Location> wide_winds() const;
+  std::set<int> groups_with_flights() const;
   void estimate_noise(const Fit* at);
   GroupUnknowns group_sd() const { return {case_.unknown.wind, case_.unknown.wind, case_.unknown.slope}; }
 
@@ -119,6 +126,7 @@ class FlightProblem final : public Problem {
   std::set<int> out_;  ///< trials that are flagged
   std::vector<Flag> flags_;
   std::map<std::string, int> unused_;
+  int unaimed_ = 0;  ///< rows with such a reading and no azimuth
   std::vector<Regressor> regressors_;
   bool updated_ = false;
 };

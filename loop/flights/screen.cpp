@@ -170,14 +170,15 @@ bool FlightProblem::screen(const Selection& selection) {
         const int i = b.trials[std::size_t(s.flight)];
         now.insert(i);
         const Trial& t = trials_[std::size_t(i)];
+        const std::size_t line = case_.shots.line[std::size_t(t.row)];
         auto slip = slip_of(i, selection.base);  // what fits best may follow such flights
         if (!slip) slip = slip_of(i, at);
         if (slip) {
-          flags.push_back({t.row, t.shot.id, slip->first, slip->second, int(flags.size()) + 1});
+          flags.push_back({t.row, line, t.shot.id, slip->first, slip->second, int(flags.size()) + 1});
           continue;
         }
         flags.push_back(
-            {t.row, t.shot.id, channel(b.readings[std::size_t(s.reading)].second).name,
+            {t.row, line, t.shot.id, channel(b.readings[std::size_t(s.reading)].second).name,
              fmt::format("nothing explains this flight: {:.1f} standard deviations off", std::sqrt(s.squared)),
              int(flags.size()) + 1});
       }

@@ -309,7 +309,10 @@ bool HistoryProblem::screen(const Selection& selection) {
         // A motion moves its neighbours too; two readings in a row may fail together.
         if (std::abs(here(i) - 0.5 * (beside(i - 2) + beside(i + 2))) < 6 * scale) continue;
         flags_.push_back(
-            {int(first + i), fmt::format("{}", first + i + 1), channel(c).name,
+            {int(first + i),
+             {},
+             fmt::format("{}", first + i + 1),
+             channel(c).name,
              fmt::format("stands alone: {:.3g} off at {:.6g} s in {}", -here(i), record.times[i], record.name),
              int(flags_.size()) + 1});
         record.measured(i, c) = measured_(first + i, c) = kNaN;

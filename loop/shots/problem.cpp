@@ -23,6 +23,11 @@ namespace {
 constexpr std::size_t kMostToSelect = 450;  // what names an effect does not need thousands, whose cost would be felt
 constexpr double kMixture = 20;             // least gain of two populations over one
 
+/// Whether a row's reading is compared: a side hangs on the direction of the launch, from which the ball is followed.
+bool judged(const Shots& shots, const Column& c, std::size_t row) {
+  return std::isfinite(c.value[row]) && (output_of(c.stem) != Output::side || recorded(shots, row, Output::azimuth));
+}
+
 }  // namespace
 
 ShotProblem::ShotProblem(const ShotCase& c, const std::vector<DerivedColumn>& derived,
@@ -68,10 +73,18 @@ void ShotProblem::read(const std::vector<DerivedColumn>& derived, std::optional<
         derived, [&](const DerivedColumn& d) { return !d.input && d.share == 1 && d.column == c->name; });
     const bool used_up = case_.loft_unknown && Output(o) == Output::launch_angle;
     if ((computed && !used_up) || std::ranges::none_of(c->value, [](double x) { return std::isfinite(x); })) continue;
-    int rows = 0, read = 0;
+    int rows = 0, read = 0, unaimed = 0;
     for (const int row : inputs_.row_of)
-      if (!bad.contains(row) && !(held_rows_ && held_rows_->contains(row)))
-        ++rows, read += std::isfinite(c->value[row]);
+      if (!bad.contains(row) && !(held_rows_ && held_rows_->contains(row))) {
+        ++rows;
+        if (!std::isfinite(c->value[row])) continue;
+        if (judged(shots, *c, std::size_t(row))) ++read;
+        else ++unaimed;
+      }
+    if (unaimed > 0)
+      notes_.push_back(fmt::format("{}: {} {} no azimuth from which the ball is followed: not judged there", c->name,
+                                   unaimed, unaimed == 1 ? "row has" : "rows have"));
+    if (unaimed > 0 && read == 0) continue;
     if (!case_.noise.contains(c->name) && !case_.averages && read < kFewestOfRows && read < rows) {
       notes_.push_back(fmt::format("{}: its noise is not declared, and {} readings in {} rows do not tell it: not used",
                                    c->name, read, rows));
@@ -105,7 +118,8 @@ void ShotProblem::read(const std::vector<DerivedColumn>& derived, std::optional<
   for (Eigen::Index i = 0; i < measured.rows(); ++i) {
     const std::size_t row = std::size_t(inputs_.row_of[i]);
     if (case_.flight) good.trials[i].seen = seen_launch(shots, row);
-    for (Eigen::Index k = 0; k < measured.cols(); ++k) measured(i, k) = columns[k]->native(row);
+    for (Eigen::Index k = 0; k < measured.cols(); ++k)
+      measured(i, k) = judged(shots, *columns[k], row) ? columns[k]->native(row) : kNaN;
   }
   if (seen) {
     seen->value.resize(measured.rows());
@@ -224,7 +238,8 @@ std::vector<Flag> ShotProblem::flags() const {
   const std::vector<RowFlag>& all = flags_.empty() ? early_ : flags_;
   for (const RowFlag& f : all) own = std::max(own, f.finding);
   for (const RowFlag& f : all)
-    told.push_back({f.row, case_.shots.id[f.row], f.column, f.reason, f.finding ? f.finding : ++own});
+    told.push_back(
+        {f.row, case_.shots.line[f.row], case_.shots.id[f.row], f.column, f.reason, f.finding ? f.finding : ++own});
   std::ranges::stable_sort(told, {}, &Flag::row);
   std::map<int, int> number;
   for (Flag& f : told) f.finding = number.emplace(f.finding, int(number.size()) + 1).first->second;

@@ -204,8 +204,9 @@ Column make_column(const std::string& header, const std::vector<std::string>& ce
 
 /// Rows that are not, letter for letter, an earlier one. Two shots may well read alike where little is recorded: fewer
 /// than twelve digits, no number of the shot. A shot that stands twice under two numbers has the same letters in every
-/// column of inputs and results, with twelve digits of results.
-std::vector<std::size_t> different_rows(const post::Sheet& sheet) {
+/// column of inputs and results, with twelve digits of results. `elsewhere`: results in another file.
+std::vector<std::size_t> different_rows(const post::Sheet& sheet, const std::vector<std::string>& ids,
+                                        const std::map<std::string, std::vector<std::string>>& elsewhere) {
   constexpr std::ptrdiff_t kDigits = 12;
   const auto numbered = std::ranges::find(sheet.names, "shot") - sheet.names.begin();
   std::vector<std::size_t> kept;
@@ -230,6 +231,13 @@ std::vector<std::size_t> different_rows(const post::Sheet& sheet) {
       if (result[c]) of_results += count;
       if (used[c]) shot.push_back(cell);
     }
+    if (const auto more = elsewhere.find(ids[i]); more != elsewhere.end())
+      for (const std::string& cell : more->second) {
+        row.push_back(cell);
+        shot.push_back(cell);
+        digits += digits_of(cell);
+        of_results += digits_of(cell);
+      }
     const bool tells = digits >= kDigits || (numbered < std::ssize(sheet.names) && !row[numbered].empty());
     const bool again = !seen.insert(std::move(row)).second && tells,
                twice = !struck.insert(std::move(shot)).second && of_results >= kDigits;
@@ -296,8 +304,20 @@ std::vector<std::size_t> rows_by_value(const Shots& shots) {
   return rows;
 }
 
-Shots read_shots(const post::Sheet& all, bool flights) {
-  std::vector<std::size_t> kept = different_rows(all);
+std::vector<std::string> ids_of(const post::Sheet& sheet) {
+  const auto shot = std::ranges::find(sheet.names, "shot");
+  std::vector<std::string> ids;
+  for (std::size_t i = 0; i < sheet.rows(); ++i) {
+    const std::string cell = shot == sheet.names.end() ? "" : sheet.columns[std::size_t(shot - sheet.names.begin())][i];
+    ids.push_back(cell.empty() ? std::to_string(i + 1) : cell);
+  }
+  return ids;
+}
+
+Shots read_shots(const post::Sheet& all, bool flights,
+                 const std::map<std::string, std::vector<std::string>>& elsewhere) {
+  const std::vector<std::string> ids = ids_of(all);
+  std::vector<std::size_t> kept = different_rows(all, ids, elsewhere);
   in_order_of_shots(all, kept);
   const post::Sheet sheet = only(all, kept);
   Shots shots;
@@ -312,12 +332,8 @@ Shots read_shots(const post::Sheet& all, bool flights) {
             fmt::format("{}:1: columns '{}' and '{}' hold the same quantity", sheet.file, other->name, column.name));
     shots.columns.push_back(std::move(column));
   }
-  const auto shot = std::ranges::find(sheet.names, "shot");
-  shots.has_shot_column = shot != sheet.names.end();
-  for (std::size_t i = 0; i < sheet.rows(); ++i) {
-    const std::string cell = shots.has_shot_column ? sheet.columns[shot - sheet.names.begin()][i] : "";
-    shots.id.push_back(cell.empty() ? std::to_string(kept[i] + 1) : cell);
-  }
+  shots.has_shot_column = std::ranges::count(sheet.names, "shot") > 0;
+  for (const std::size_t i : kept) shots.id.push_back(ids[i]);
   in_order_of_quantities(shots.columns);
   return shots;
 }
@@ -427,11 +443,13 @@ Vec3 direction(double up, double right) {
   return {std::cos(up) * std::cos(right), -std::cos(up) * std::sin(right), std::sin(up)};
 }
 
+std::optional<double> recorded(const Shots& shots, std::size_t row, Output output) {
+  const Column* c = shots.find_stem(stem(output));
+  return c && c->numeric && std::isfinite(c->value[row]) ? std::optional(c->value[row]) : std::nullopt;
+}
+
 std::optional<Launch> seen_launch(const Shots& shots, std::size_t row) {
-  const auto read = [&](Output o) -> std::optional<double> {
-    const Column* c = shots.find_stem(stem(o));
-    return c && c->numeric && std::isfinite(c->value[row]) ? std::optional(c->value[row]) : std::nullopt;
-  };
+  const auto read = [&](Output o) { return recorded(shots, row, o); };
   const auto speed = read(Output::ball_speed), up = read(Output::launch_angle);
   auto back = read(Output::backspin), side = read(Output::sidespin);
   if (const auto rate = read(Output::spin_rate); !(back && side) && rate) {

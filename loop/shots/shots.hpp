@@ -1,6 +1,8 @@
 /// Measured shots: the columns of a file with their roles, in SI, missing values as NaN.
 #pragma once
 
+#include <map>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -56,8 +58,15 @@ std::vector<T> evenly(const std::vector<T>& all, std::size_t most) {
 /// from there: their resolution is that unit's. A row that repeats an earlier one letter for letter, or all its inputs
 /// and results under another number, is left out: a file pasted twice holds no more shots. Throws DataError: an output
 /// or input column with a wrong unit, text in it, the same quantity twice. `flights`: carry and the like are outputs,
-/// too; otherwise columns like any other.
-Shots read_shots(const post::Sheet& sheet, bool flights = false);
+/// too; otherwise columns like any other. `elsewhere`: cells of results that stand in another file, by the shot's id;
+/// they tell two rows apart as their own cells do.
+Shots read_shots(const post::Sheet& sheet, bool flights = false,
+                 const std::map<std::string, std::vector<std::string>>& elsewhere = {});
+/// The `shot` value of every row, or the row's number.
+std::vector<std::string> ids_of(const post::Sheet& sheet);
+
+/// What a row records of this quantity [SI]; absent without a column or a number.
+std::optional<double> recorded(const Shots& shots, std::size_t row, Output output);
 
 /// Of unit length.
 Vec3 direction(double up, double right);

@@ -850,6 +850,33 @@ TEST(Import, AFlaggedShotCountsInNoMean) {
   EXPECT_NE(page.find("115.8 ± 1.4"), std::string::npos) << "of the other 23";
 }
 
+/// Two sessions number their shots alike: of a flagged shot's number the one of the same line is left out.
+TEST(Landings, AFlaggedShotOfOneSessionIsNoneOfAnother) {
+  const fs::path dir = test::fresh_directory("landings_sessions");
+  std::string text =
+      "session,shot,club,club_speed_mps,dynamic_loft_deg,ball_speed_mps,launch_angle_deg,spin_rate_rpm\n";
+  for (int i = 0; i < 36; ++i) {
+    const double speed = 38 + 0.37 * ((i * 7) % 11), loft = 18 + 0.45 * ((i * 5) % 10);
+    text += fmt::format("{},{},7i,{:.2f},{:.2f},{:.2f},{:.2f},{:.0f}\n",
+                        i < 12   ? "mon"
+                        : i < 24 ? "tue"
+                                 : "wed",
+                        i % 12 + 1, speed, loft, i == 16 ? 20 : 1.36 * speed + 0.05 * ((i * 3) % 7), 0.79 * loft,
+                        5250 + 190 * (loft - 20) + 8 * ((i * 3) % 5));
+  }
+  test::write(dir / "shots.csv", text);
+  test::write(dir / "case.toml",
+              "kind = \"loop\"\n[model]\nbase = \"rigid-planar\"\n[head]\nmass_kg = 0.27\n[data]\nshots = "
+              "\"shots.csv\"\nlandings = \"shots.csv\"\n");
+  const auto o = command("run '" + dir.string() + "' --out '" + (dir / "out").string() + "'");
+  ASSERT_EQ(o.status, 0) << o.text;
+  std::set<int> lines;
+  for (const auto& f : nlohmann::json::parse(test::content(dir / "out" / "report.json"))["flagged_rows"])
+    lines.insert(f["line"].get<int>());
+  EXPECT_TRUE(lines.contains(18)) << o.text;
+  EXPECT_EQ(post::read_csv(dir / "out" / "landings.csv").rows(), 36 - lines.size());
+}
+
 /// Where the carry alone tells the unit of a speed, it is in the yards or metres that go with that unit.
 TEST(Import, ACarryThatTellsTheUnitIsReadInItsOwn) {
   const fs::path dir = test::fresh_directory("import_carry_unit");

@@ -326,6 +326,45 @@ restitution_slope_s_per_m = 0.0
   EXPECT_NEAR(part["half_width_95"].get<double>(), 1.96 * std::hypot(heavier - own, livelier - own), 1e-9);
 }
 
+/// A sidespin or a tilt that is not recorded is no zero: its row is left out, and where no row has it, `of` is refused.
+TEST(Study, ARegressionTakesNoMissingQuantityForZero) {
+  const fs::path dir = fresh_directory("study_regression_gaps");
+  const auto told = [&](const std::string& spin, const std::string& of, const auto& cells) {
+    std::string shots = "shot,club_speed_mps,impact_toe_mm,ball_speed_mps,launch_angle_deg," + spin + "\n";
+    for (int i = 0; i < 60; ++i) {
+      const int toe = (i * 7) % 20 - 10;
+      shots += std::to_string(i + 1) + "," + std::to_string(40 + (i * 11) % 17) + "," + std::to_string(toe) +
+               ",62,12," + cells(i, toe) + "\n";
+    }
+    write(dir / "case/shots.csv", shots);
+    write(dir / "case/case.toml",
+          "kind = \"study\"\nmodels = [\"rigid-planar\"]\noutputs = [\"ball_speed_mps\"]\n[[axis]]\nkey = "
+          "\"delivery.club_speed_mps\"\nvalues = [44, 45]\n[delivery]\nclub_speed_mps = 45.0\n[head]\nmass_kg = "
+          "0.2\n[regression]\nshots = \"shots.csv\"\non = [\"impact_toe_mm\", \"club_speed_mps\"]\nof = [" +
+              of + "]\n");
+    return command("run " + (dir / "case").string() + " --force --out " + (dir / "out").string());
+  };
+  const auto sidespin = [](int i, int toe) { return std::to_string(-30 * toe + (i * 5) % 9 - 4); };
+  const Outcome half = told("backspin_rpm,sidespin_rpm", "\"sidespin_rpm\", \"spin_axis_deg\"",
+                            [&](int i, int toe) { return "2500," + (i % 2 ? "" : sidespin(i, toe)); });
+  ASSERT_EQ(half.status, 0) << half.text;
+  EXPECT_NE(half.text.find("30 of 60 measured rows are whole"), std::string::npos) << half.text;
+  const auto& slopes = nlohmann::json::parse(content(dir / "out" / "summary.json"))["regression"]["slopes"];
+  EXPECT_NEAR(slopes["sidespin_rpm"]["impact_toe_mm"]["slope"].get<double>(), -30, 0.5);
+  const Outcome none = told("backspin_rpm", "\"sidespin_rpm\"", [](int, int) { return "2500"; }),
+                rate = told("spin_rate_rpm", "\"backspin_rpm\"", [](int, int) { return "2500"; }),
+                rifle = told("backspin_rpm,sidespin_rpm", "\"sidespin_rpm\", \"riflespin_rpm\"",
+                             [&](int i, int toe) { return "2500," + sidespin(i, toe); });
+  for (const auto& [o, name] : {std::pair{&none, "sidespin_rpm"}, {&rate, "backspin_rpm"}, {&rifle, "riflespin_rpm"}}) {
+    EXPECT_EQ(o->status, 2) << o->text;
+    EXPECT_NE(o->text.find("regression.of: '" + std::string(name) + "': no row of"), std::string::npos) << o->text;
+  }
+  const Outcome polar = told("spin_rate_rpm,spin_axis_deg", "\"spin_axis_deg\", \"sidespin_rpm\"",
+                             [](int, int toe) { return "2500," + std::to_string(-0.5 * toe); });
+  ASSERT_EQ(polar.status, 0) << polar.text;
+  EXPECT_NE(polar.text.find("60 of 60 measured rows are whole"), std::string::npos) << polar.text;
+}
+
 /// Two rows of one value cannot be told apart by it.
 TEST(Study, PartsOverAColumnNeedItsValuesToDiffer) {
   const fs::path dir = fresh_directory("study_parts_twice");

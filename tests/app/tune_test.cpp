@@ -405,6 +405,46 @@ TEST(Tune, BoundsOnAColumnOfWordsAreRefused) {
   }
 }
 
+/// Twelve shots with a column of totals, which is compared only.
+std::filesystem::path shots_with_totals(const std::string& header, const std::string& fourth) {
+  const auto d = test::fresh_directory("tune_totals");
+  std::ofstream(d / "case.toml") << R"(kind = "tune"
+model = "rigid-planar"
+[head]
+mass_kg = 0.26
+[flight.turf]
+[data]
+shots = "shots.csv"
+compared_only = ["total_m"]
+[data.noise]
+ball_speed_mps = 0.25
+total_m = 5.0
+[[parameters]]
+name = "restitution"
+min = 0.5
+max = 1.0
+[search]
+starts = 1
+)";
+  std::ofstream shots(d / "shots.csv");
+  shots << "shot,club_speed_mps,attack_angle_deg,dynamic_loft_deg,ball_speed_mps," << header << '\n';
+  for (int i = 0; i < 12; ++i)
+    shots << i + 1 << ',' << 44 + i % 3 << ",-2,16," << 62 + i % 3 << ',' << (i == 3 ? fourth : std::to_string(230 + i))
+          << '\n';
+  return d;
+}
+
+/// A word makes a column one of words, and a number without a unit may be in yards.
+TEST(Tune, AChannelNeedsAColumnOfNumbersInItsUnit) {
+  EXPECT_EQ(refused(shots_with_totals("total_m", "233")), "");
+  EXPECT_EQ(refused(shots_with_totals("total_m", "")), "");
+  const std::string word = refused(shots_with_totals("total_m", "n/a")),
+                    bare = refused(shots_with_totals("total", "9")), other = refused(shots_with_totals("total_s", "9"));
+  EXPECT_NE(word.find("shots.csv:5: column 'total_m': 'n/a' is not a number"), std::string::npos) << word;
+  EXPECT_NE(bare.find("shots.csv:1: column 'total' needs a unit of length"), std::string::npos) << bare;
+  EXPECT_NE(other.find("shots.csv:1: column 'total_s' needs a unit of length"), std::string::npos) << other;
+}
+
 TEST(Tune, NoiseHasAUnitOfItsChannel) {
   const auto d = chosen_shots("tune_noise", "");
   std::string text = test::content(d / "case.toml");

@@ -300,6 +300,76 @@ TEST(FlightBase, AColumnMovedByARowIsToldAndAQuietOneIsNotAccused) {
   EXPECT_TRUE(run(quiet).columns.empty());
 }
 
+/// Few flights whose noise is not declared fit this or that slip by chance: no column is accused.
+TEST(FlightBase, FewFlightsAccuseNoColumn) {
+  for (const int flights : {8, 11, 14, 20})
+    for (unsigned seed = 1; seed <= 4; ++seed) {
+      FlightCase c = drives({}, flights, seed);
+      c.noise.clear();
+      const LoopResult r = run(c);
+      EXPECT_TRUE(r.columns.empty()) << flights << " flights, seed " << seed << ": " << r.columns.front().text;
+    }
+}
+
+/// A wrong unit is seen without a declared noise, too.
+TEST(FlightBase, AUnitIsToldWithoutADeclaredNoise) {
+  FlightCase c = drives({}, 30, 5);
+  c.noise.clear();
+  for (Column& column : c.shots.columns)
+    if (column.name == "carry_m")
+      for (double& x : column.value) x /= 0.9144;
+  const LoopResult r = run(c);
+  ASSERT_EQ(r.columns.size(), 1U) << told(r);
+  EXPECT_EQ(r.columns.front().column, "carry_m");
+  EXPECT_EQ(r.columns.front().finding, "unit");
+}
+
+/// A launch without an azimuth did not set out on the target line: where it lands to the side says nothing.
+TEST(FlightBase, ASideWithoutAnAzimuthIsNotJudged) {
+  FlightCase c = drives({}, 44, 2);
+  const auto azimuth = std::ranges::find(c.shots.columns, "azimuth_deg", &Column::name);
+  ASSERT_NE(azimuth, c.shots.columns.end());
+  std::vector<double> sizes;
+  for (const double x : azimuth->value) sizes.push_back(std::abs(x));
+  std::ranges::sort(sizes);
+  for (double& x : azimuth->value)
+    if (std::abs(x) >= sizes[40]) x = kNaN;
+  const LoopResult some = run(c);
+  EXPECT_TRUE(some.flagged.empty()) << told(some);
+  EXPECT_TRUE(
+      std::ranges::any_of(some.notes, [](const std::string& n) { return n.starts_with("4 rows have no azimuth"); }));
+
+  std::erase_if(c.shots.columns, [](const Column& column) { return column.name == "azimuth_deg"; });
+  c.noise.erase("azimuth_deg");
+  const LoopResult none = run(c);
+  EXPECT_EQ(none.used, 44) << told(none);
+  for (const ChannelResult& channel : none.channels) EXPECT_FALSE(channel.refuted) << channel.name;
+  EXPECT_TRUE(
+      std::ranges::any_of(none.notes, [](const std::string& n) { return n.starts_with("44 rows have no azimuth"); }));
+}
+
+/// Nothing is told of the wind of a group none of whose launches flies.
+TEST(FlightBase, AGroupWithoutFlightsHasNoWind) {
+  FlightCase c = drives({}, 30, 2);
+  for (Column& column : c.shots.columns)
+    if (column.name == "hole") column.text[0] = "lost";
+    else if (column.name == "launch_angle_deg") column.value[0] = radians(-20);
+  const LoopResult r = run(c);
+  EXPECT_EQ(r.unused.at(FlightProblem::kNoFlight), 1);
+  EXPECT_TRUE(std::ranges::none_of(r.notes, [](const std::string& n) { return n.starts_with("wind of lost"); }));
+  EXPECT_TRUE(std::ranges::any_of(r.notes, [](const std::string& n) { return n.starts_with("wind of h0"); }));
+}
+
+/// A backspin without a sidespin is not what the spin is taken from where there is a rate.
+TEST(FlightBase, TheNoiseOfASpinIsThatOfTheColumnItIsTakenFrom) {
+  const FlightCase c = drives({}, 20, 2);
+  FlightCase with = c;
+  Column back = *c.shots.find_stem("spin_rate");
+  back.name = "backspin_rpm", back.stem = "backspin";
+  with.shots.columns.push_back(back);
+  EXPECT_DOUBLE_EQ(FlightProblem(with).sigma(0, 0), FlightProblem(c).sigma(0, 0));
+}
+
 /// Winds far beyond what is declared of them are told, though each flight is explained by one.
 TEST(FlightBase, WindsBeyondTheDeclaredAreTold) {
   FlightCase c = drives({}, 60, 6, 3);

@@ -52,9 +52,10 @@ std::string csv(const models::FlightConditions& truth, double spread, unsigned s
   return text;
 }
 
-/// `only`: the one reading of the flight that is kept; none: all.
+/// `only`: the one reading of the flight that is kept; none: all. `unaimed`: the azimuths so many degrees from the
+/// target line are not recorded.
 LoopResult loop_on(const models::FlightConditions& truth, const std::string& only = "", double spread = 1,
-                   unsigned seed = 1) {
+                   unsigned seed = 1, double unaimed = 1000) {
   const fs::path file = fs::path(testing::TempDir()) / ("hosel_flight_loop_" + std::to_string(getpid()) + ".csv");
   std::ofstream(file, std::ios::binary) << csv(truth, spread, seed);
   static const auto model = models::find("rigid-eccentric")->make({});
@@ -67,6 +68,8 @@ LoopResult loop_on(const models::FlightConditions& truth, const std::string& onl
   c.flight.emplace();
   c.shots = read_shots(post::read_csv(file), true);
   fs::remove(file);
+  for (double& x : c.shots.find("azimuth_deg")->value)
+    if (std::abs(x) >= radians(unaimed)) x = std::nan("");
   if (!only.empty())
     std::erase_if(c.shots.columns, [&](const Column& k) {
       const auto output = output_of(k.stem);
@@ -91,6 +94,24 @@ TEST(FlightEffects, NothingHiddenNothingAdopted) {
   EXPECT_EQ(r.channels.size(), 10U);
   EXPECT_TRUE(r.adopted.empty());
   EXPECT_EQ(r.verdict, Verdict::no_residual);
+}
+
+/// A shot without an azimuth did not set out on the target line: its side is not judged.
+TEST(FlightEffects, ASideWithoutAnAzimuthIsNotJudged) {
+  const auto tells = [](const LoopResult& r, const std::string& of) {
+    return std::ranges::any_of(r.notes, [&](const std::string& n) {
+      return n.starts_with("side_m: " + of) && n.ends_with("not judged there");
+    });
+  };
+  const LoopResult some = loop_on({}, "", 1, 1, 2), none = loop_on({}, "", 1, 1, 0);
+  EXPECT_EQ(some.used, 24);
+  EXPECT_EQ(some.channels.size(), 10U);
+  EXPECT_TRUE(some.flagged.empty());
+  EXPECT_EQ(some.verdict, Verdict::no_residual);
+  EXPECT_TRUE(tells(some, ""));
+  EXPECT_EQ(none.channels.size(), 8U) << "neither azimuth nor side";
+  EXPECT_TRUE(none.flagged.empty());
+  EXPECT_TRUE(tells(none, "24 rows have no azimuth"));
 }
 
 TEST(FlightEffects, NamesDrag) {
