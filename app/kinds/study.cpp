@@ -472,7 +472,7 @@ class StudyJob final : public PointJob {
         root.fail("solve", fmt::format("'{}' is sought, and '{}' is varied", s.key, twice));
       for (const std::string& set : blow_->overrides())
         for (const std::string& key : keys_of(set))
-          if (same_quantity(s.key, key))
+          if ((key == key_of(set) || key != s.key) && same_quantity(s.key, key))  // in a table: it is replaced
             root.fail("solve", fmt::format("'{}' is sought, and set to one value ({})", s.key, key));
       for (const StudySolve& other : solves_)
         // A later [[solve]] of the same key goes on from what an earlier one found.

@@ -181,10 +181,13 @@ void Design::check_varied_once(const Table& root, const std::vector<std::string>
     const bool first = factors_[f].kind == FactorKind::variants || factors_[f].kind == FactorKind::rows;
     for (const std::string& key : keys[f]) {
       for (const std::string& s : stated) {
-        const std::vector<std::string> others = keys_of(s);
-        if (first ? replaces(others.front(), key)
-                  : std::ranges::any_of(others, [&](const std::string& other) { return replaces(key, other); }))
-          refuse(key, fmt::format(", and set to one value by `--set` or the study's `set` ({})", others.front()));
+        // A table that comes before an axis may hold its key, in the same unit: the axis replaces that.
+        const std::string own = key_of(s);
+        const auto lost = [&](const std::string& other) {
+          return (other == own || other != key) && replaces(key, other);
+        };
+        if (first ? replaces(own, key) : std::ranges::any_of(keys_of(s), lost))
+          refuse(key, fmt::format(", and set to one value by `--set` or the study's `set` ({})", own));
       }
       for (std::size_t g = f + 1; g < factors_.size(); ++g)  // set later
         for (const std::string& other : keys[g])

@@ -220,7 +220,7 @@ void FlightColumns::try_constants() {
     try {
       FlightProblem problem = launch ? FlightProblem(right, FlightProblem::About::record)
                                      : problem_->with_readings(right);
-      problem.hold_noise(*problem_, scaled);
+      if (slip.finding != "unit") problem.hold_noise(*problem_, scaled);  // a wrong unit widens what is estimated
       const bool anew = launch || (problem.noise() != problem_->noise()).any();
       slip.deviance = deviance(problem, anew ? by_effects(problem) : by_effects_, case_.rules.further_gain) -
                       2 * density;

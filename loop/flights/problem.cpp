@@ -54,6 +54,9 @@ FlightProblem FlightProblem::with_readings(const FlightCase& c) const {
       for (std::size_t i = 0; i < trials_.size(); ++i)
         if (double& y = other.measured_(Eigen::Index(i), k); std::isfinite(y))
           y = c.shots.find(channel(k).name)->native(std::size_t(trials_[i].row));
+  other.estimate_noise(nullptr);
+  other.train_blocks_ = other.blocks(train_);
+  other.held_blocks_ = other.blocks(holdout_);
   return other;
 }
 

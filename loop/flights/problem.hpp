@@ -23,7 +23,6 @@ class FlightProblem final : public Problem {
   explicit FlightProblem(const FlightCase& c, About about = About::likeliest);
 
   /// The same launches with the readings of another case, whose rows are the same; it refers to this problem's case.
-  /// `hold_noise` has to follow.
   FlightProblem with_readings(const FlightCase& c) const;
   /// Noise that is not declared is that of a problem with the same channels, times the factor of a channel, by name:
   /// that of a few readings would be the less the better they happen to fit.

@@ -230,7 +230,8 @@ void tell(const std::vector<Recurring>& found, const Shots& shots, LoopResult& r
   for (const Flag& f : result.flagged) finding = std::max(finding, f.finding);
   for (const Recurring& r : found) {
     ++finding;
-    for (const int row : r.rows) result.flagged.push_back({row, shots.line[row], shots.id[row], r.column, r.reason, finding});
+    for (const int row : r.rows)
+      result.flagged.push_back({row, shots.line[row], shots.id[row], r.column, r.reason, finding});
   }
 }
 

@@ -311,19 +311,6 @@ TEST(FlightBase, FewFlightsAccuseNoColumn) {
     }
 }
 
-/// A wrong unit is seen without a declared noise, too.
-TEST(FlightBase, AUnitIsToldWithoutADeclaredNoise) {
-  FlightCase c = drives({}, 30, 5);
-  c.noise.clear();
-  for (Column& column : c.shots.columns)
-    if (column.name == "carry_m")
-      for (double& x : column.value) x /= 0.9144;
-  const LoopResult r = run(c);
-  ASSERT_EQ(r.columns.size(), 1U) << told(r);
-  EXPECT_EQ(r.columns.front().column, "carry_m");
-  EXPECT_EQ(r.columns.front().finding, "unit");
-}
-
 /// A launch without an azimuth did not set out on the target line: where it lands to the side says nothing.
 TEST(FlightBase, ASideWithoutAnAzimuthIsNotJudged) {
   FlightCase c = drives({}, 44, 2);
@@ -346,18 +333,6 @@ TEST(FlightBase, ASideWithoutAnAzimuthIsNotJudged) {
   for (const ChannelResult& channel : none.channels) EXPECT_FALSE(channel.refuted) << channel.name;
   EXPECT_TRUE(
       std::ranges::any_of(none.notes, [](const std::string& n) { return n.starts_with("44 rows have no azimuth"); }));
-}
-
-/// Nothing is told of the wind of a group none of whose launches flies.
-TEST(FlightBase, AGroupWithoutFlightsHasNoWind) {
-  FlightCase c = drives({}, 30, 2);
-  for (Column& column : c.shots.columns)
-    if (column.name == "hole") column.text[0] = "lost";
-    else if (column.name == "launch_angle_deg") column.value[0] = radians(-20);
-  const LoopResult r = run(c);
-  EXPECT_EQ(r.unused.at(FlightProblem::kNoFlight), 1);
-  EXPECT_TRUE(std::ranges::none_of(r.notes, [](const std::string& n) { return n.starts_with("wind of lost"); }));
-  EXPECT_TRUE(std::ranges::any_of(r.notes, [](const std::string& n) { return n.starts_with("wind of h0"); }));
 }
 
 /// A backspin without a sidespin is not what the spin is taken from where there is a rate.
