@@ -179,9 +179,6 @@ void Design::check_varied_once(const Table& root, const std::vector<std::string>
   for (const DesignFactor& f : factors_) keys.push_back(keys_of_levels(f));
   for (std::size_t f = 0; f < factors_.size(); ++f) {
     const bool first = factors_[f].kind == FactorKind::variants || factors_[f].kind == FactorKind::rows;
-    std::set<std::string> direct;
-    for (const DesignLevel& l : factors_[f].levels)
-      for (const std::string& s : l.set) direct.insert(key_of(s));
     for (const std::string& key : keys[f]) {
       for (const std::string& s : stated) {
         // A table that comes before an axis may hold its key, in the same unit: the axis replaces that.
@@ -189,8 +186,7 @@ void Design::check_varied_once(const Table& root, const std::vector<std::string>
         const auto lost = [&](const std::string& other) {
           return (other == own || other != key) && replaces(key, other);
         };
-        // A key in a variant's table may be set for all variants.
-        if (first ? direct.contains(key) && replaces(own, key) : std::ranges::any_of(keys_of(s), lost))
+        if (first ? replaces(own, key) : std::ranges::any_of(keys_of(s), lost))
           refuse(key, fmt::format(", and set to one value by `--set` or the study's `set` ({})", own));
       }
       for (std::size_t g = f + 1; g < factors_.size(); ++g)  // set later

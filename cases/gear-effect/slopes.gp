@@ -11,8 +11,10 @@ height(name) = name eq 'measured' ? 5 : name eq 'rigid-eccentric' ? 4 : name eq 
 is(output, over) = strcol(1) eq output && strcol(2) eq over ? column(4) : NaN
 colour(name) = name eq 'measured' ? 0xd55e00 : 0x0072b2
 set multiplot layout 2,2
+set xtics 20
 set title 'sidespin towards the toe [rpm/mm]'
 plot slopes using (is('sidespin_rpm', 'toe')):(height(strcol(3))):5:(colour(strcol(3))) lc rgb variable lw 2 pt 7
+set xtics autofreq
 set title 'ball speed towards the toe [m/s per mm]'
 plot slopes using (is('ball_speed_mps', 'toe')):(height(strcol(3))):5:(colour(strcol(3))) lc rgb variable lw 2 pt 7
 set xtics 50

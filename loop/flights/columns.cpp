@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <map>
 #include <tuple>
 
 #include "golf/data_error.hpp"
@@ -200,7 +199,6 @@ void FlightColumns::try_constants() {
     FlightCase right = case_;
     double density = 0;
     bool launch = false;
-    std::map<std::string, double> scaled;  // readings
     for (const auto& [column, other] : {std::pair{slip.column, slip.second}, {slip.second, slip.column}}) {
       if (column < 0) continue;
       const Column& recorded = *columns_[std::size_t(column)];
@@ -213,14 +211,13 @@ void FlightColumns::try_constants() {
       // The density of the written numbers. Beside a declared noise a wider one earns nothing: it is no evidence.
       const double per_reading = std::log(std::abs(slip.factor));
       if (!shown) continue;
-      scaled[recorded.name] = std::abs(slip.factor);
       density += double(problem_->measured().col(channel_of(recorded)).array().isFinite().count()) *
                  (case_.noise.contains(recorded.name) ? std::min(0.0, per_reading) : per_reading);
     }
     try {
       FlightProblem problem = launch ? FlightProblem(right, FlightProblem::About::record)
                                      : problem_->with_readings(right);
-      if (slip.finding != "unit") problem.hold_noise(*problem_, scaled);  // a wrong unit widens what is estimated
+      if (slip.finding != "unit") problem.hold_noise(*problem_);  // a wrong unit widens what is estimated
       const bool anew = launch || (problem.noise() != problem_->noise()).any();
       slip.deviance = deviance(problem, anew ? by_effects(problem) : by_effects_, case_.rules.further_gain) -
                       2 * density;

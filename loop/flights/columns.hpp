@@ -9,7 +9,7 @@ namespace hosel::loop {
 /// Every slip of whole columns is tried on some of the flights, evenly spread. What is unknown of a shot and of its
 /// group is integrated out about zero, and the likeliest effect stands beside it, whatever a slip says. Slips compete
 /// by a deviance whose tail is logarithmic, so that a slip is seen however gross it is. Noise that is not declared is
-/// that of the columns as recorded.
+/// that of the columns as recorded, but where a unit is tried.
 class FlightColumns {
  public:
   /// `usable`: rows of the file that hold a flight.

@@ -60,12 +60,10 @@ FlightProblem FlightProblem::with_readings(const FlightCase& c) const {
   return other;
 }
 
-void FlightProblem::hold_noise(const FlightProblem& as, const std::map<std::string, double>& factors) {
-  for (int k = 0; k < width(); ++k) {
-    Channel& ch = channels_[std::size_t(k)];
-    const auto factor = factors.find(ch.name);
-    if (!ch.trusted()) ch.noise = as.channel(k).noise * (factor == factors.end() ? 1 : factor->second);
-  }
+void FlightProblem::hold_noise(const FlightProblem& as) {
+  if ((noise() == as.noise()).all()) return;
+  for (int k = 0; k < width(); ++k)
+    if (Channel& ch = channels_[std::size_t(k)]; !ch.trusted()) ch.noise = as.channel(k).noise;
   train_blocks_ = blocks(train_);
   held_blocks_ = blocks(holdout_);
 }

@@ -24,9 +24,9 @@ class FlightProblem final : public Problem {
 
   /// The same launches with the readings of another case, whose rows are the same; it refers to this problem's case.
   FlightProblem with_readings(const FlightCase& c) const;
-  /// Noise that is not declared is that of a problem with the same channels, times the factor of a channel, by name:
-  /// that of a few readings would be the less the better they happen to fit.
-  void hold_noise(const FlightProblem& as, const std::map<std::string, double>& factors);
+  /// Noise that is not declared is that of a problem with the same channels: that of a few readings would be the less
+  /// the better they happen to fit.
+  void hold_noise(const FlightProblem& as);
 
   /// Every form that acts on a flight alone.
   std::vector<Parametrisation> forms() const;

@@ -922,6 +922,8 @@ TEST(Study, AWholeTableLeavesNothingOfWhatTheDesignVaries) {
   write(dir / "blows.csv", "delivery.attack_angle_deg\n1\n2\n");
   const std::string rows = "rows.file = \"blows.csv\"\n";
   refused(light, "head={name=\"driver-2024\"}", "'head.mass_kg' is varied by this study, and set to one value");
+  refused("[[variant]]\nname = \"whole\"\nset = [\"" + blow + "\"]\n", "delivery.club_speed_mps=50",
+          "'delivery.club_speed_mps' is varied by this study, and set to one value");
   refused(rows, blow, "'delivery.attack_angle_deg' is varied by this study, and set to one value");
   EXPECT_EQ(check(light, blow).status, 0) << check(light, blow).text;
   // An axis is set after the table: what the table does not hold may be varied.

@@ -335,6 +335,19 @@ TEST(FlightBase, ASideWithoutAnAzimuthIsNotJudged) {
       std::ranges::any_of(none.notes, [](const std::string& n) { return n.starts_with("44 rows have no azimuth"); }));
 }
 
+/// Nothing is told of the wind of a group whose only flight does not count.
+TEST(FlightBase, AGroupWithoutFlightsHasNoWind) {
+  FlightCase c = drives({}, 44, 2);
+  for (Column& column : c.shots.columns)
+    if (column.name == "hole") column.text[0] = "lost";
+    else if (column.name == "carry_m") column.value[0] *= 0.5;
+  const LoopResult r = run(c);
+  ASSERT_EQ(r.flagged.size(), 1U) << told(r);
+  ASSERT_EQ(r.flagged.front().row, 0);
+  EXPECT_TRUE(std::ranges::none_of(r.notes, [](const std::string& n) { return n.starts_with("wind of lost"); }));
+  EXPECT_TRUE(std::ranges::any_of(r.notes, [](const std::string& n) { return n.starts_with("wind of h0"); }));
+}
+
 /// A backspin without a sidespin is not what the spin is taken from where there is a rate.
 TEST(FlightBase, TheNoiseOfASpinIsThatOfTheColumnItIsTakenFrom) {
   const FlightCase c = drives({}, 20, 2);
